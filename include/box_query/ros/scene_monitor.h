@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Boxes from topics, placed by tf, as a Scene: what a planner embeds and what the node puts its
+/// services in front of.
+#pragma once
+
+#include <box_query/ros/parameters.h>
+#include <box_query/scene.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <ros/node_handle.h>
+#include <ros/time.h>
+#include <tf2_ros/buffer.h>
+
+namespace box_query {
+
+/// Who a box is. Snapshots order their boxes by (topic, ns, id).
+struct BoxName {
+  std::string topic;  ///< resolved
+  std::string ns;
+  std::int64_t id = 0;
+  std::string label;  ///< not part of the identity
+};
+
+/// What a snapshot knows of one of the topics.
+struct TopicState {
+  TopicParameters parameters;  ///< its topic is the resolved name
+  bool heard = false;
+  ros::Time last_message;    ///< ROS time at which the last one was received
+  std::size_t rejected = 0;  ///< boxes of its last word that were rejected or never placed
+  std::size_t waiting = 0;   ///< boxes that wait for their transform
+  std::string
+      problem;  ///< first of the rejections or missing transforms, as a sentence; unknown type
+};
+
+/// Whether answers from a snapshot may be trusted as a whole.
+struct Completeness {
+  bool complete = false;
+  std::string reason;  ///< what is missing, and what to do; empty if complete
+};
+
+/// The boxes at one moment. Immutable; hold it as long as you need it.
+struct Snapshot {
+  std::uint64_t id = 0;  ///< counts up from 1; 0 is never a snapshot
+  /// Newest stamp among the messages of its boxes and deletions (a zero stamp counts as its time of
+  /// receipt).
+  ros::Time stamp;
+  std::string frame;               ///< fixed frame
+  Scene scene;                     ///< box i of the scene ...
+  std::vector<BoxName> names;      ///< ... has this name
+  std::vector<ros::Time> stamps;   ///< ... and came with this stamp (of the message)
+  std::vector<TopicState> topics;  ///< in the order of the parameter
+
+  /// At ROS time `now`: every required topic heard, none stale, no box waiting or rejected.
+  Completeness completeness(const ros::Time& now) const;
+  /// [s] from `stamp` to `now`; +inf if no message has been heard.
+  double age(const ros::Time& now) const;
+};
+
+using SnapshotPtr = std::shared_ptr<const Snapshot>;
+
+/// Counts since start. Nothing is dropped without one of them.
+struct MonitorStatistics {
+  std::uint64_t messages = 0;
+  std::uint64_t malformed_messages = 0;  ///< lengths that do not fit, more boxes than allowed
+  std::uint64_t unknown_type_messages = 0;
+  std::uint64_t boxes = 0;  ///< boxes received (added or modified)
+  std::uint64_t rejected_boxes =
+      0;  ///< not finite, negative size, quaternion off unit length, empty frame
+  std::uint64_t ignored_markers = 0;     ///< markers of a type that is no box
+  std::uint64_t expired_boxes = 0;       ///< lifetime over
+  std::uint64_t given_up_boxes = 0;      ///< their transform never came
+  std::uint64_t overflowed_boxes = 0;    ///< more waiting than allowed
+  std::uint64_t builds = 0;              ///< scenes built
+  std::uint64_t avoided_builds = 0;      ///< changes that no scene was built for
+  std::uint64_t avoided_transforms = 0;  ///< boxes whose frame is the fixed frame
+};
+
+/// Subscribes to the topics of Parameters::box_topics and keeps a Scene of what they say.
+///
+/// Callbacks run on threads of its own: its owner needs not spin. All functions may be called from
+/// any thread.
+class SceneMonitor {
+ public:
+  /// Topics are resolved in the namespace of `nh`.
+  SceneMonitor(const ros::NodeHandle& nh, const Parameters& parameters);
+  ~SceneMonitor();
+  SceneMonitor(const SceneMonitor&) = delete;
+  SceneMonitor& operator=(const SceneMonitor&) = delete;
+
+  /// The snapshot that was built last: never null, never blocks, never builds.
+  SnapshotPtr scene() const;
+
+  /// The snapshot of all that has been received until now (lifetimes included), built first if need
+  /// be.
+  SnapshotPtr currentScene();
+
+  /// One of the last Parameters::kept_scenes snapshots that currentScene() or scene() handed out,
+  /// or null.
+  SnapshotPtr sceneById(std::uint64_t id) const;
+
+  /// Pose of `source` in `target` at `stamp` (0: latest), waiting for it up to `timeout` seconds of
+  /// wall time, whatever the ROS clock does. Equal frames need no tf.
+  /// @return an empty string, or a sentence that says what was missing and what to do.
+  std::string lookUpTransform(const std::string& target, const std::string& source,
+                              const ros::Time& stamp, double timeout,
+                              geometry_msgs::TransformStamped& transform) const;
+
+  /// Calls `changed` from a thread of the monitor after the boxes have changed, at most once a
+  /// change, no lock held.
+  void setChangedCallback(std::function<void()> changed);
+
+  MonitorStatistics statistics() const;
+  const Parameters& parameters() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace box_query
