@@ -86,6 +86,9 @@ struct Blockage {
 /// An immutable set of boxes. All queries are const, take no lock and may run on any number of
 /// threads.
 ///
+/// Copies are cheap: they share what never changes. A scene that was moved from may only be assigned
+/// to or destroyed.
+///
 /// A box is known by its index in the vector that the scene was made from. Answers do not depend on
 /// how the scene is organised inside. `mask`, where it is not null, has as many entries as the
 /// scene has boxes.
@@ -95,8 +98,8 @@ class Scene {
   /// @throws std::invalid_argument naming the first box that is not valid.
   explicit Scene(std::vector<Box> boxes);
   ~Scene();
-  Scene(const Scene&) = delete;
-  Scene& operator=(const Scene&) = delete;
+  Scene(const Scene&);
+  Scene& operator=(const Scene&);
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
 
@@ -132,7 +135,7 @@ class Scene {
 
  private:
   struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::shared_ptr<const Impl> impl_;
 };
 
 }  // namespace box_query
