@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// All parameters of the node, with their defaults, units and allowed ranges. Nothing else states a
-/// default.
+/// All parameters of the node, with their defaults and units. Nothing else states a default; the
+/// allowed ranges are in one table in parameters.cpp, which documentation() prints.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
 #include <ros/node_handle.h>
+
+namespace XmlRpc {
+class XmlRpcValue;
+}
 
 namespace box_query {
 
@@ -27,40 +30,48 @@ struct Parameters {
   std::string fixed_frame = "map";
   std::vector<TopicParameters> box_topics = {TopicParameters()};
 
-  /// [s] of wall time that a request waits for its transform, 0 to 60.
+  /// [s] of wall time that a request waits for its transform.
   double transform_timeout = 0.2;
-  /// [s] of wall time that a box waits for its transform before it is given up, 0 to 3600.
+  /// [s] of wall time that a box waits for its transform before it is given up.
   double waiting_timeout = 10.0;
   /// Boxes that may wait at once; a message that would exceed it is placed as far as it can be, the
   /// rest counted.
   int max_waiting_boxes = 100000;
-  /// [s] of transforms that the tf buffer keeps, 1 to 3600.
+  /// [s] of transforms that the tf buffer keeps.
   double transform_history = 10.0;
 
   /// Boxes a message may carry; a larger message is refused whole.
   int max_boxes_per_message = 1000000;
   /// Rays or segments a request may carry; a larger request is refused.
   int max_queries_per_call = 1000000;
-  /// Threads that answer services, 1 to 64.
+  /// Threads that answer services.
   int service_threads = 2;
 
   /// [s] after the last query during which new scenes are built as boxes come; later they are built
   /// when asked for.
   double build_ahead = 2.0;
-  /// Past snapshots that ~get_scene can still return, 1 to 10000.
+  /// Past snapshots that ~get_scene can still return.
   int kept_scenes = 100;
 
-  /// [Hz] at most at which ~markers is published, 0.1 to 100.
+  /// [Hz] at most at which ~markers is published.
   double marker_rate = 10.0;
-  /// [s] that the markers of a query stay, 0.1 to 3600.
+  /// [s] that the markers of a query stay.
   double marker_lifetime = 5.0;
-  /// Queries of one call that are drawn, 0 to 10000.
+  /// Queries that are drawn at once, the latest ones.
   int max_marker_queries = 200;
 
   /// Reads every parameter that is set in the namespace of `private_nh`; the others keep their
-  /// defaults.
+  /// defaults. Warns of parameters that it does not know.
   /// @throws std::invalid_argument with the parameter's full name, its value and what is allowed.
   static Parameters fromRos(const ros::NodeHandle& private_nh);
+
+  /// The same from `values`, which is what is set in the namespace `ns`: a struct, or invalid if
+  /// there is nothing. Names that it does not know are appended to `unknown`.
+  static Parameters fromValues(const XmlRpc::XmlRpcValue& values, const std::string& ns,
+                               std::vector<std::string>& unknown);
+
+  /// A table in Markdown: name, type, default, range with unit, and meaning of every parameter.
+  static std::string documentation();
 };
 
 }  // namespace box_query
