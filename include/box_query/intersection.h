@@ -56,4 +56,22 @@ Intersection findIntersection(const Line& line, const OrientedBox& box) noexcept
 Intersection findIntersection(const Ray& ray, const OrientedBox& box) noexcept;
 Intersection findIntersection(const Segment& segment, const OrientedBox& box) noexcept;
 
+/// Distances [m] along a component, from its origin or start to where it enters and leaves a box.
+struct IntersectionRanges {
+  /// t_enter and t_exit times the length of the direction (of end - start), correctly rounded;
+  /// negative behind a line's origin. The interval is empty, [+inf, -inf], on a miss.
+  double enter = std::numeric_limits<double>::infinity();
+  double exit = -std::numeric_limits<double>::infinity();
+};
+
+/// The metric interval that belongs to findIntersection(component, box). On its own, so that nobody
+/// pays for square roots who did not ask for them.
+/// @pre isValid(component) && isValid(box)
+IntersectionRanges findRanges(const Line& line, const AlignedBox& box) noexcept;
+IntersectionRanges findRanges(const Ray& ray, const AlignedBox& box) noexcept;
+IntersectionRanges findRanges(const Segment& segment, const AlignedBox& box) noexcept;
+IntersectionRanges findRanges(const Line& line, const OrientedBox& box) noexcept;
+IntersectionRanges findRanges(const Ray& ray, const OrientedBox& box) noexcept;
+IntersectionRanges findRanges(const Segment& segment, const OrientedBox& box) noexcept;
+
 }  // namespace box_query
