@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What the commands of this package share: find ROS, install what is missing, build. To be sourced by bash.
+#   bq_set_up [--yes] GROUP...    groups of packages: build, demo, viewer, test, checks
+#   bq_build BUILD_DIR TARGETS... [-- CMAKE_OPTION...]
+# Both return 1 after a sentence on stderr that says what to do.
+
+bq_source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# Somebody's own python3 before the system's has no ROS.
+export PATH=/usr/bin:$PATH
+
+# Prints the packages of a group, by the names of Debian's own ROS or of packages.ros.org.
+bq_packages() {
+  case $bq_ros/$1 in
+    */build) echo build-essential cmake libeigen3-dev libboost-dev ;;&
+    debian/build) echo catkin libroscpp-dev libtf2-dev libtf2-ros-dev libtf2-msgs-dev libstd-msgs-dev \
+      libgeometry-msgs-dev libvisualization-msgs-dev ros-std-msgs ros-geometry-msgs \
+      ros-visualization-msgs ros-message-generation ros-message-runtime ;;
+    debian/demo) echo python3-roslaunch python3-rosservice python3-rospy python3-std-msgs \
+      python3-geometry-msgs python3-visualization-msgs tf2-tools ;;
+    debian/viewer) echo rviz ;;
+    debian/test) echo libgtest-dev librostest-dev python3-rostest ;;
+    debian/checks) echo catkin-lint clang-format ;;
+    noetic/build) echo ros-noetic-catkin ros-noetic-roscpp ros-noetic-tf2 ros-noetic-tf2-ros \
+      ros-noetic-std-msgs ros-noetic-geometry-msgs ros-noetic-visualization-msgs \
+      ros-noetic-message-generation ros-noetic-message-runtime ;;
+    noetic/demo) echo ros-noetic-roslaunch ros-noetic-rosservice ros-noetic-rospy ;;
+    noetic/viewer) echo ros-noetic-rviz ;;
+    noetic/test) echo libgtest-dev ros-noetic-rostest ;;
+    noetic/checks) echo python3-catkin-lint clang-format ;;
+  esac
+}
+
+bq_find_ros() {
+  if [ -d /opt/ros/noetic ] || [ "$(. /etc/os-release && echo "$VERSION_CODENAME")" = focal ]; then
+    bq_ros=noetic
+  else
+    bq_ros=debian
+  fi
+}
+
+bq_missing_packages() {
+  local package
+  for package in "$@"; do
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || echo "$package"
+  done
+}
+
+bq_install() {
+  local yes=$1 command sudo='' answer package
+  shift
+  [ "$(id -u)" = 0 ] || sudo='sudo '
+  command="${sudo}apt-get install -y --no-install-recommends $*"
+  echo "These packages are missing and will be installed:" >&2
+  echo "  $command" >&2
+  if [ "$yes" != yes ] && [ "${CI:-}" != true ]; then
+    if [ ! -t 0 ]; then
+      echo "Nobody can be asked here. Run that command, or this one again with --yes." >&2
+      return 1
+    fi
+    read -r -p "Go on? [Y/n] " answer
+    case $answer in
+      '' | [Yy]*) ;;
+      *) return 1 ;;
+    esac
+  fi
+  # Package lists first where there are none, or none that knows the packages.
+  for package in "$@"; do
+    if ! apt-cache show "$package" >/dev/null 2>&1; then
+      ${sudo}apt-get update -q || return 1
+      break
+    fi
+  done
+  for package in "$@"; do
+    if ! apt-cache show "$package" >/dev/null 2>&1; then
+      echo "apt knows no package $package. This needs ROS 1: Debian 12 has it; on Ubuntu 20.04 add the" \
+        "package source as on http://wiki.ros.org/noetic/Installation/Ubuntu first." >&2
+      return 1
+    fi
+  done
+  DEBIAN_FRONTEND=noninteractive $command
+}
+
+bq_set_up() {
+  local yes=no group missing
+  local -a packages=()
+  if [ "${1:-}" = --yes ]; then
+    yes=yes
+    shift
+  fi
+  bq_find_ros
+  for group in "$@"; do
+    packages+=($(bq_packages "$group"))
+  done
+  missing=$(bq_missing_packages "${packages[@]}")
+  if [ -n "$missing" ]; then
+    bq_install $yes $missing || return 1
+  fi
+  if [ $bq_ros = noetic ]; then
+    bq_source /opt/ros/noetic/setup.bash
+  fi
+}
+
+# Set-up scripts of ROS read variables that are not set, and our arguments if they get none.
+bq_source() {
+  local flags=$-
+  set +u
+  . "$1" --
+  case $flags in *u*) set -u ;; esac
+}
+
+# Runs a command with its output in a log: the last line shown on a terminal, all of it on failure.
+bq_logged() {
+  local log=$1 line status
+  shift
+  if [ "${bq_verbose:-no}" = yes ]; then
+    "$@" 2>&1 | tee "$log" >&2
+    status=${PIPESTATUS[0]}
+  elif [ -t 2 ]; then
+    "$@" 2>&1 | tee "$log" | while read -r line; do printf '\r\033[K%.78s' "$line" >&2; done
+    status=${PIPESTATUS[0]}
+    printf '\r\033[K' >&2
+  else
+    status=0
+    "$@" >"$log" 2>&1 || status=$?
+  fi
+  if [ "$status" != 0 ]; then
+    [ "${bq_verbose:-no}" = yes ] || cat "$log" >&2
+    echo "That failed: $*" >&2
+    echo "What it said is above and in $log" >&2
+    return 1
+  fi
+}
+
+bq_build() {
+  local build_dir=$1
+  shift
+  local -a targets=()
+  while [ $# -gt 0 ] && [ "$1" != -- ]; do
+    targets+=("$1")
+    shift
+  done
+  [ $# -eq 0 ] || shift
+  # A checkout that was moved or copied is built anew.
+  if [ -e "$build_dir/CMakeCache.txt" ] &&
+    ! grep -qxF "CMAKE_CACHEFILE_DIR:INTERNAL=$build_dir" "$build_dir/CMakeCache.txt"; then
+    rm -rf "$build_dir"
+  fi
+  mkdir -p "$build_dir"
+  if [ ! -e "$build_dir/Makefile" ]; then
+    echo "Configuring in $build_dir" >&2
+    bq_logged "$build_dir/configure.log" cmake -S "$bq_source_dir" -B "$build_dir" \
+      -G 'Unix Makefiles' -DPYTHON_EXECUTABLE=/usr/bin/python3 "$@" || return 1
+  fi
+  echo "Building in $build_dir" >&2
+  bq_logged "$build_dir/build.log" cmake --build "$build_dir" --target "${targets[@]}" \
+    -- -j "$(nproc)" || return 1
+  bq_source "$build_dir/devel/setup.bash"
+}
