@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <box_query/scene.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace box_query {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kMax = std::numeric_limits<double>::max();
+
+AlignedBox cubeAt(double x, double y = 0, double z = 0) {
+  return {Vector3(x - 1, y - 1, z - 1), Vector3(x + 1, y + 1, z + 1)};
+}
+
+OrientedBox turnedCubeAt(double x) {
+  return {Vector3(x, 0, 0), Quaternion(1, 0, 0, 0), Vector3::Ones()};
+}
+
+const Ray kAlongX{{0, 0, 0}, {2, 0, 0}};
+
+TEST(SceneCast, AnEmptySceneIsMissed) {
+  for (const Scene& scene : {Scene(), Scene(std::vector<Box>())}) {
+    const Hit hit = scene.cast(kAlongX);
+    EXPECT_FALSE(hit.hit);
+    EXPECT_EQ(hit.box, kNoBox);
+    EXPECT_EQ(hit.range, kInf);
+    EXPECT_TRUE(std::isnan(hit.exit_range));
+    EXPECT_TRUE(std::isnan(hit.normal[0]));
+    EXPECT_FALSE(scene.castAny(kAlongX));
+    EXPECT_TRUE(scene.findAll(kAlongX).empty());
+  }
+}
+
+TEST(SceneCast, AnInvalidBoxIsNamed) {
+  try {
+    const Scene scene({cubeAt(0), OrientedBox{Vector3::Zero(), Quaternion(0, 0, 0, 0), {1, 1, 1}}});
+    FAIL();
+  } catch (const std::invalid_argument& e) {
+    EXPECT_NE(std::string(e.what()).find("box 1"), std::string::npos);
+  }
+}
+
+TEST(SceneCast, TheClosestBoxOfBothKinds) {
+  const Scene scene({cubeAt(30), turnedCubeAt(10), cubeAt(20), cubeAt(-10)});
+  const Hit hit = scene.cast(kAlongX);
+  EXPECT_TRUE(hit.hit);
+  EXPECT_EQ(hit.box, 1U);
+  EXPECT_EQ(hit.range, 9.0);
+  EXPECT_EQ(hit.exit_range, 11.0);
+  EXPECT_EQ(hit.t, 4.5);
+  EXPECT_FALSE(hit.started_inside);
+  EXPECT_EQ(hit.entered, FaceSet(1U));
+  EXPECT_EQ(hit.point, Vector3(9, 0, 0));
+  EXPECT_EQ(hit.normal, Vector3(-1, 0, 0));
+}
+
+TEST(SceneCast, TiesGoToTheLowestIndex) {
+  const Scene scene({cubeAt(20), turnedCubeAt(10), cubeAt(10), cubeAt(10, 1)});
+  EXPECT_EQ(scene.cast(kAlongX).box, 1U);
+  BoxMask mask(4);
+  mask.set(1, false);
+  EXPECT_EQ(scene.cast(kAlongX, kInf, &mask).box, 2U);
+  // A shelf: the plane x = 9 belongs to three boxes, and 0.1 + 0.2 is not 0.3.
+  const Scene near_tie(
+      {AlignedBox{{0.1 + 0.2, -1, -1}, {1, 1, 1}}, AlignedBox{{0.3, -1, -1}, {1, 1, 1}}});
+  EXPECT_EQ(near_tie.cast(kAlongX).box, 1U);
+}
+
+TEST(SceneCast, OrderIsExactWhereParametersRoundToEqualDoubles) {
+  // t = a / 3 for two neighbouring a, closer than doubles of t can tell.
+  const double a = 1.5;
+  const double b = std::nextafter(a, 2.0);
+  const Scene scene({AlignedBox{{b, -1, -1}, {9, 1, 1}}, AlignedBox{{a, -1, -1}, {9, 1, 1}}});
+  const Ray ray{{0, 0, 0}, {1.0 + 0x1p-52, 0, 0}};
+  EXPECT_EQ(scene.cast(ray).box, 1U);
+  const auto all = scene.findAll(ray);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].box, 1U);
+  // Beyond the range of double every parameter is infinite, and the order still known.
+  const Scene far({cubeAt(1e100), cubeAt(1e99), cubeAt(1e98)});
+  const Ray slow{{0, 0, 0}, {1e-300, 0, 0}};
+  const Hit hit = far.cast(slow);
+  EXPECT_EQ(hit.box, 2U);
+  EXPECT_EQ(hit.t, kInf);
+  EXPECT_EQ(hit.range, 1e98);
+  EXPECT_EQ(far.findAll(slow)[1].box, 1U);
+}
+
+TEST(SceneCast, StartingInsideIsRangeZero) {
+  const Scene scene({cubeAt(5), cubeAt(0)});
+  const Hit hit = scene.cast(kAlongX);
+  EXPECT_EQ(hit.box, 1U);
+  EXPECT_TRUE(hit.started_inside);
+  EXPECT_EQ(hit.range, 0.0);
+  EXPECT_EQ(hit.exit_range, 1.0);
+  EXPECT_EQ(hit.normal, Vector3(0, 0, 0));
+  EXPECT_EQ(hit.point, kAlongX.origin);
+}
+
+TEST(SceneCast, AZeroDirectionIsAPoint) {
+  const Scene scene({cubeAt(5), cubeAt(0)});
+  const Hit hit = scene.cast(Ray{{0, 1, 0}, {0, 0, 0}});
+  EXPECT_EQ(hit.box, 1U);
+  EXPECT_TRUE(hit.started_inside);
+  EXPECT_EQ(hit.range, 0.0);
+  EXPECT_EQ(hit.exit_range, 0.0);
+  EXPECT_TRUE(scene.castAny(Ray{{0, 1, 0}, {0, 0, 0}}, 0.0));
+  EXPECT_FALSE(scene.cast(Ray{{0, 2, 0}, {0, 0, 0}}).hit);
+}
+
+TEST(SceneCast, MaxRangeIsInMetresClosedAndExact) {
+  const Scene scene({cubeAt(10)});
+  EXPECT_TRUE(scene.cast(kAlongX, 9.0).hit);
+  EXPECT_TRUE(scene.castAny(kAlongX, 9.0));
+  EXPECT_FALSE(scene.cast(kAlongX, std::nextafter(9.0, 0.0)).hit);
+  EXPECT_FALSE(scene.castAny(kAlongX, std::nextafter(9.0, 0.0)));
+  EXPECT_TRUE(Scene({cubeAt(1)}).cast(kAlongX, 0.0).hit);
+  // The range is irrational: 9 sqrt(2), and no double is equal to it.
+  const Ray diagonal{{0, 0, 0}, {1, 1, 0}};
+  const Scene corner({cubeAt(10, 10)});
+  const double range = corner.cast(diagonal).range;
+  EXPECT_EQ(range, std::sqrt(162.0));
+  EXPECT_FALSE(corner.castAny(diagonal, std::nextafter(range, 0.0)));
+  EXPECT_TRUE(corner.castAny(diagonal, std::nextafter(range, kInf)));
+  EXPECT_EQ(corner.castAny(diagonal, range), corner.cast(diagonal, range).hit);
+  EXPECT_TRUE(Scene({AlignedBox{{kMax, 0, 0}, {kMax, 0, 0}}}).cast(kAlongX, kMax).hit);
+}
+
+TEST(SceneCast, ANormalIsThatOfTheLowestAxis) {
+  EXPECT_EQ(Scene({cubeAt(5, 5, 5)}).cast(Ray{{0, 0, 0}, {1, 1, 1}}).normal, Vector3(-1, 0, 0));
+  EXPECT_EQ(Scene({cubeAt(0, 5, 5)}).cast(Ray{{0, 0, 0}, {0, 1, 1}}).normal, Vector3(0, -1, 0));
+  const OrientedBox turned{Vector3(5, 0, 0), Quaternion(0.7, 0, 0, 0.7), Vector3(1, 2, 3)};
+  const Hit hit = Scene({turned}).cast(kAlongX);
+  EXPECT_EQ(hit.entered, FaceSet(1U << FaceSet::number(1, true)));
+  EXPECT_EQ(hit.range, 3.0);
+  EXPECT_NEAR((hit.normal - Vector3(-1, 0, 0)).norm(), 0.0, 1e-15);
+}
+
+TEST(SceneFindAll, SortedByEntryThenIndex) {
+  const Scene scene({cubeAt(20), cubeAt(10, 1), cubeAt(-10), turnedCubeAt(10), cubeAt(0, 9)});
+  const auto line = scene.findAll(Line{kAlongX.origin, kAlongX.direction});
+  ASSERT_EQ(line.size(), 4U);
+  EXPECT_EQ(line[0].box, 2U);
+  EXPECT_EQ(line[1].box, 1U);
+  EXPECT_EQ(line[2].box, 3U);
+  EXPECT_EQ(line[3].box, 0U);
+  EXPECT_EQ(line[3].intersection.t_exit, 10.5);
+  EXPECT_EQ(scene.findAll(kAlongX).size(), 3U);
+  EXPECT_EQ(scene.findAll(Segment{{0, 0, 0}, {9, 0, 0}}).size(), 2U);
+  BoxMask mask(5, false);
+  mask.set(3, true);
+  const auto masked = scene.findAll(kAlongX, &mask);
+  ASSERT_EQ(masked.size(), 1U);
+  EXPECT_EQ(masked[0].box, 3U);
+}
+
+TEST(BoxMask, LooksAtWhatItIsTold) {
+  BoxMask mask(130);
+  EXPECT_EQ(mask.size(), 130U);
+  mask.set(64, false);
+  EXPECT_TRUE(mask[63] && !mask[64] && mask[65] && mask[129]);
+  BoxMask none(70, false);
+  none.set(69, true);
+  EXPECT_TRUE(!none[0] && none[69]);
+}
+
+}  // namespace
+}  // namespace box_query
