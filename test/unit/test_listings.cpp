@@ -3,6 +3,8 @@
 #include "reference/listings_as_printed.h"
 #include "reference/sampler.h"
 
+#include <box_query/intersection.h>
+
 #include <gtest/gtest.h>
 
 namespace box_query {
@@ -54,7 +56,9 @@ TEST(Listings, OneTwoAndEightAgreeOnLines) {
     hits += hit;
     ASSERT_EQ(listing2::testIntersection(query.line, box), hit) << i;
     ASSERT_EQ(listing8::findIntersection(query.line, box).num_points, hit ? 2 : 0) << i;
+    ASSERT_EQ(testIntersection(query.line, query.oriented), hit) << i;
     const bool aligned_hit = listing1::testIntersection(query.line, toOrientedBox3(query.aligned));
+    ASSERT_EQ(testIntersection(query.line, query.aligned), aligned_hit) << i;
     ASSERT_EQ(listing2::testIntersection(query.line, query.aligned), aligned_hit) << i;
     ASSERT_EQ(listing8::findIntersection(query.line, query.aligned).num_points, aligned_hit ? 2 : 0)
         << i;
@@ -72,7 +76,9 @@ TEST(Listings, ThreeFourAndNineAgreeOnRays) {
     hits += hit;
     ASSERT_EQ(listing4::testIntersection(query.ray, box), hit) << i;
     ASSERT_EQ(listing9::findIntersection(query.ray, box).num_points, hit ? 2 : 0) << i;
+    ASSERT_EQ(testIntersection(query.ray, query.oriented), hit) << i;
     const bool aligned_hit = listing3::testIntersection(query.ray, toOrientedBox3(query.aligned));
+    ASSERT_EQ(testIntersection(query.ray, query.aligned), aligned_hit) << i;
     ASSERT_EQ(listing4::testIntersection(query.ray, query.aligned), aligned_hit) << i;
     ASSERT_EQ(listing9::findIntersection(query.ray, query.aligned).num_points, aligned_hit ? 2 : 0)
         << i;
@@ -91,7 +97,9 @@ TEST(Listings, FiveSixAndTenAgreeOnSegments) {
     hits += hit;
     ASSERT_EQ(listing6::testIntersection(query.segment, box), hit) << i;
     ASSERT_EQ(listing10::findIntersection(query.segment, box).num_points, hit ? 2 : 0) << i;
+    ASSERT_EQ(testIntersection(query.segment, query.oriented), hit) << i;
     const bool aligned_hit = listing5::testIntersection(centered, toOrientedBox3(query.aligned));
+    ASSERT_EQ(testIntersection(query.segment, query.aligned), aligned_hit) << i;
     ASSERT_EQ(listing6::testIntersection(query.segment, query.aligned), aligned_hit) << i;
     ASSERT_EQ(listing10::findIntersection(query.segment, query.aligned).num_points,
               aligned_hit ? 2 : 0)
@@ -100,30 +108,35 @@ TEST(Listings, FiveSixAndTenAgreeOnSegments) {
   expectEnoughOfEach(hits);
 }
 
-TEST(Listings, PointsFoundLieOnComponentAndBox) {
+TEST(Listings, FindWhatTheLibraryFinds) {
   Sampler sampler(4);
   int points = 0;
   for (int i = 0; i < kQueries; ++i) {
     const Query query = randomQuery(sampler);
     const OrientedBox3 box = toOrientedBox3(query.oriented);
-    // A segment's parameter counts from its centre.
-    const Vector3 middle = (query.segment.start + query.segment.end) / 2.0;
+    const double length = (query.segment.end - query.segment.start).norm();
     const struct {
-      Found found;
-      Vector3 origin;
+      Found listing;
+      Intersection library;
+      double unit;  ///< [m] that a parameter of the library stands for
+      double zero;  ///< [m] from where the listing counts to where the library does
     } answers[] = {
-        {listing8::findIntersection(query.line, box), query.line.origin},
-        {listing9::findIntersection(query.ray, box), query.ray.origin},
-        {listing10::findIntersection(query.segment, box), middle},
+        {listing8::findIntersection(query.line, box), findIntersection(query.line, query.oriented),
+         1.0, 0.0},
+        {listing9::findIntersection(query.ray, box), findIntersection(query.ray, query.oriented),
+         1.0, 0.0},
+        // A listing counts a segment's metres from its centre.
+        {listing10::findIntersection(query.segment, box),
+         findIntersection(query.segment, query.oriented), length, -length / 2.0},
     };
-    for (const auto& answer : answers) {
-      for (int k = 0; k < answer.found.num_points; ++k) {
-        ++points;
-        const Vector3& point = answer.found.point[k];
-        const Vector3 expected = answer.origin + answer.found.t[k] * query.line.direction;
-        ASSERT_LT((point - expected).cwiseAbs().maxCoeff(), kRounding) << i;
-        const Vector3 inside = alongAxes(point - box.C, box).cwiseAbs() - box.e;
-        ASSERT_LT(inside.maxCoeff(), kRounding) << i;
+    for (const auto& [listing, library, unit, zero] : answers) {
+      ASSERT_EQ(listing.num_points, library.num_points) << i;
+      if (listing.num_points == 2) {
+        ASSERT_NEAR(listing.t[0], zero + unit * library.t_enter, kRounding) << i;
+        ASSERT_NEAR(listing.t[1], zero + unit * library.t_exit, kRounding) << i;
+        ASSERT_LT((listing.point[0] - library.enter_point).norm(), kRounding) << i;
+        ASSERT_LT((listing.point[1] - library.exit_point).norm(), kRounding) << i;
+        points += 2;
       }
     }
   }
