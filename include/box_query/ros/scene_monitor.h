@@ -10,13 +10,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include <geometry_msgs/TransformStamped.h>
 #include <ros/node_handle.h>
 #include <ros/time.h>
-#include <tf2_ros/buffer.h>
 
 namespace box_query {
 
@@ -73,13 +74,14 @@ struct MonitorStatistics {
   std::uint64_t boxes = 0;  ///< boxes received (added or modified)
   std::uint64_t rejected_boxes =
       0;  ///< not finite, negative size, quaternion off unit length, empty frame
-  std::uint64_t ignored_markers = 0;     ///< markers of a type that is no box
-  std::uint64_t expired_boxes = 0;       ///< lifetime over
-  std::uint64_t given_up_boxes = 0;      ///< their transform never came
-  std::uint64_t overflowed_boxes = 0;    ///< more waiting than allowed
-  std::uint64_t builds = 0;              ///< scenes built
-  std::uint64_t avoided_builds = 0;      ///< changes that no scene was built for
-  std::uint64_t avoided_transforms = 0;  ///< boxes whose frame is the fixed frame
+  std::map<std::string, std::uint64_t> rejections;  ///< the same, by reason
+  std::uint64_t ignored_markers = 0;                ///< markers of a type that is no box
+  std::uint64_t expired_boxes = 0;                  ///< lifetime over
+  std::uint64_t given_up_boxes = 0;                 ///< their transform never came
+  std::uint64_t overflowed_boxes = 0;               ///< more waiting than allowed
+  std::uint64_t builds = 0;                         ///< scenes built
+  std::uint64_t avoided_builds = 0;                 ///< changes that no scene was built for
+  std::uint64_t avoided_transforms = 0;             ///< boxes whose frame is the fixed frame
 };
 
 /// Subscribes to the topics of Parameters::box_topics and keeps a Scene of what they say.
@@ -113,7 +115,8 @@ class SceneMonitor {
                               geometry_msgs::TransformStamped& transform) const;
 
   /// Calls `changed` from a thread of the monitor after the boxes have changed, at most once a
-  /// change, no lock held.
+  /// change; it may call any other function of the monitor. Returns when a running call of the one
+  /// before has ended, so that null takes leave safely.
   void setChangedCallback(std::function<void()> changed);
 
   MonitorStatistics statistics() const;

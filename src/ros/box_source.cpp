@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ros/box_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace box_query {
+namespace {
+
+/// How far the norm of a quaternion may be from 1. Less is taken as it stands.
+constexpr double kNormTolerance = 1e-2;
+
+bool isFinite(const Quaternion& q) {
+  return q.coeffs().allFinite();
+}
+
+}  // namespace
+
+const std::array<const char*, kRejections>& rejectionNames() {
+  static const std::array<const char*, kRejections> names = {
+      "a number that is not finite", "a negative size", "an orientation that is no unit quaternion",
+      "an empty or malformed frame", "an unknown action"};
+  return names;
+}
+
+std::size_t BoxChange::rejected() const {
+  return std::accumulate(rejections.begin(), rejections.end(), std::size_t{0});
+}
+
+void BoxChange::reject(Rejection why, std::size_t count, const std::string& detail) {
+  const auto reason = static_cast<std::size_t>(why);
+  if (count > 0 && problem.empty()) {
+    problem = "box " + std::to_string(id) + " of namespace '" + ns + "' has " +
+              rejectionNames().at(reason) + " (" + detail + ")";
+  }
+  rejections.at(reason) += static_cast<std::uint32_t>(count);
+}
+
+void BoxChange::add(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
+                    const Vector3& size) {
+  if (!center.allFinite()) {
+    reject(Rejection::kNotFinite, 1, "its position");
+  } else if (!isFinite(orientation)) {
+    reject(Rejection::kNotFinite, 1, "its orientation");
+  } else if (!size.allFinite()) {
+    reject(Rejection::kNotFinite, 1, "its size");
+  } else if ((size.array() < 0.0).any()) {
+    reject(Rejection::kNegativeSize, 1, std::to_string(size.minCoeff()) + " m");
+  } else if (const double norm = orientation.norm(); !(std::abs(norm - 1.0) <= kNormTolerance)) {
+    reject(Rejection::kOrientation, 1, "its norm is " + std::to_string(norm));
+  } else {
+    boxes.push_back({box_id, {center, orientation, 0.5 * size}});
+  }
+}
+
+const std::vector<BoxSource>& boxSources() {
+  static const std::vector<BoxSource> sources = {
+      {"visualization_msgs/MarkerArray", "d155b9ce5188fbaf89745847fd5882d7", decodeMarkerArray},
+      {"visualization_msgs/Marker", "4048c9de2a16f4ae8e0538085ebf1b97", decodeMarker},
+  };
+  return sources;
+}
+
+const BoxSource* findSource(std::string_view type, std::string_view md5, std::string& problem) {
+  const std::vector<BoxSource>& sources = boxSources();
+  const auto found = std::find_if(sources.begin(), sources.end(), [&](const BoxSource& source) {
+    return source.type == type && source.md5 == md5;
+  });
+  if (found != sources.end()) {
+    return &*found;
+  }
+  problem = "its type " + std::string(type) + " (md5 " + std::string(md5) + ") is not understood";
+  std::string separator = "; publish one of ";
+  for (const BoxSource& source : sources) {
+    problem += separator + source.type + " (" + source.md5 + ")";
+    separator = ", ";
+  }
+  return nullptr;
+}
+
+DecodedMessage decodeMessage(const BoxSource& source, const std::uint8_t* data, std::size_t size,
+                             std::size_t max_boxes) {
+  WireReader reader(data, size);
+  DecodedMessage message;
+  source.decode(reader, max_boxes, message);
+  if (!reader.ok()) {
+    message.problem = reader.failure();
+  } else if (message.problem.empty() && reader.left() > 0) {
+    message.problem = std::to_string(reader.left()) + " bytes are left over at its end";
+  }
+  if (!message.problem.empty()) {
+    message.changes.clear();
+  }
+  return message;
+}
+
+std::string stripSlash(std::string_view frame) {
+  return std::string(!frame.empty() && frame.front() == '/' ? frame.substr(1) : frame);
+}
+
+std::string tooManyBoxes(std::size_t max_boxes) {
+  return "it carries more than " + std::to_string(max_boxes) +
+         " boxes; publish fewer or raise max_boxes_per_message";
+}
+
+}  // namespace box_query

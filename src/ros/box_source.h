@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What a message type of boxes is to the monitor: a name, a checksum and a decoder.
+#pragma once
+
+#include "ros/wire_reader.h"
+
+#include <box_query/geometry.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <boost/container/small_vector.hpp>
+#include <ros/time.h>
+
+namespace box_query {
+
+/// Why a box is rejected.
+enum class Rejection { kNotFinite, kNegativeSize, kOrientation, kFrame, kAction };
+constexpr std::size_t kRejections = 5;
+/// A few words each, in the order of the enumeration.
+const std::array<const char*, kRejections>& rejectionNames();
+
+struct IdentifiedBox {
+  std::int64_t id;
+  OrientedBox box;
+};
+/// Most markers are one box.
+using IdentifiedBoxes = boost::container::small_vector<IdentifiedBox, 1>;
+
+/// A change of what a topic says under one (ns, id): one marker, say.
+struct BoxChange {
+  enum class Kind {
+    kSet,     ///< from now on these boxes, and no others
+    kRemove,  ///< nothing
+    kClear,   ///< nothing under any (ns, id) of the topic
+  };
+
+  Kind kind = Kind::kSet;
+  std::string ns;
+  std::int64_t id = 0;
+  std::string label;
+  std::string frame;          ///< of the boxes, without a leading slash
+  ros::Time stamp;            ///< 0: none
+  std::int64_t lifetime = 0;  ///< [ns] of ROS time from receipt; 0: forever
+  bool frame_locked = false;  ///< the boxes move with their frame after `stamp`
+  IdentifiedBoxes boxes;
+  std::array<std::uint32_t, kRejections> rejections{};  ///< boxes that were not accepted
+  std::string problem;                                  ///< what was wrong with the first of them
+
+  std::size_t rejected() const;
+  /// Counts `boxes` bad ones.
+  void reject(Rejection why, std::size_t boxes, const std::string& detail);
+  /// The only door for boxes: checks one, halves its `size` (full sides [m]) and appends it, or
+  /// rejects it.
+  void add(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
+           const Vector3& size);
+};
+
+/// What a message says.
+struct DecodedMessage {
+  std::vector<BoxChange> changes;
+  std::size_t ignored = 0;  ///< markers of a type that is no box
+  std::string problem;      ///< not empty: the message is refused, and its changes mean nothing
+};
+
+struct BoxSource {
+  const char* type;
+  const char* md5;
+  /// Appends to `message` what the bytes say; more than `max_boxes` boxes are a problem. A failure
+  /// of the reader is handled by the caller, as are bytes that are left over.
+  void (*decode)(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
+};
+
+/// Every message type that is understood. A new one is a file of its own and its line here.
+const std::vector<BoxSource>& boxSources();
+
+/// The source of that type and checksum, or null and a sentence that names the known ones.
+const BoxSource* findSource(std::string_view type, std::string_view md5, std::string& problem);
+
+/// Decodes a whole message; never throws at bad bytes.
+DecodedMessage decodeMessage(const BoxSource& source, const std::uint8_t* data, std::size_t size,
+                             std::size_t max_boxes);
+
+/// A frame as tf2 wants it: publishers of the days of tf1 lead with a slash, which tf2 refuses.
+std::string stripSlash(std::string_view frame);
+
+/// The problem of a message with too many boxes.
+std::string tooManyBoxes(std::size_t max_boxes);
+
+// The decoders, each in its own file.
+void decodeMarker(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
+void decodeMarkerArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
+
+}  // namespace box_query

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ros/box_store.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace box_query {
+namespace {
+
+std::int64_t nanoseconds(const ros::Time& time) {
+  return static_cast<std::int64_t>(time.toNSec());
+}
+
+/// Bit for bit: no reader of a snapshot could tell them apart.
+bool same(const IdentifiedBoxes& a, const IdentifiedBoxes& b) {
+  static_assert(sizeof(IdentifiedBox) == sizeof(std::int64_t) + 10 * sizeof(double), "no padding");
+  return a.size() == b.size() && (a.empty() || std::memcmp(static_cast<const void*>(a.data()),
+                                                           static_cast<const void*>(b.data()),
+                                                           a.size() * sizeof(IdentifiedBox)) == 0);
+}
+
+}  // namespace
+
+BoxStore::BoxStore(std::size_t topics) : topics_(topics) {}
+
+Word BoxStore::hear(std::size_t topic_index, BoxChange&& change, const ros::Time& now) {
+  Word word;
+  word.topic = topic_index;
+  word.number = ++last_word_;
+  word.received = now;
+  word.expiry = change.lifetime > 0 ? nanoseconds(now) + change.lifetime : kForever;
+  word.change = std::move(change);
+
+  Topic& topic = topics_.at(topic_index);
+  Item& item = topic.items[word.change.ns][word.change.id];
+  if (item.first_word == 0) {
+    item.first_word = word.number;
+  }
+  item.latest_word = word.number;
+  item.latest_expiry = word.expiry;
+  item.problem = word.change.problem;
+  setMissing(topic, item, word.change.boxes.size(), word.change.rejected());
+  next_expiry_ = std::min(next_expiry_, word.expiry);
+  return word;
+}
+
+bool BoxStore::wants(const Word& word) const {
+  const Item* item = find(word);
+  return item && word.number >= item->first_word && word.number > item->placed_word;
+}
+
+void BoxStore::place(Word&& word, const std::string& locked_frame) {
+  Topic& topic = topics_.at(word.topic);
+  BoxChange& change = word.change;
+  Item& item = topic.items[change.ns][change.id];
+  if (word.number == item.latest_word) {
+    setMissing(topic, item, 0, item.rejected);
+  }
+  if (!same(item.boxes, change.boxes) || item.label != change.label ||
+      item.locked_frame != locked_frame) {
+    ++boxes_revision_;
+  }
+  item.placed_word = word.number;
+  item.placed_expiry = word.expiry;
+  item.label = std::move(change.label);
+  item.stamp = change.stamp;
+  item.locked_frame = locked_frame;
+  item.boxes = std::move(change.boxes);
+}
+
+void BoxStore::giveUp(const Word& word, const std::string& problem) {
+  Topic& topic = topics_.at(word.topic);
+  if (!wants(word)) {
+    return;
+  }
+  Item& item = topic.items[word.change.ns][word.change.id];
+  if (word.number == item.latest_word) {
+    item.problem = item.problem.empty() ? problem : item.problem;
+    setMissing(topic, item, 0, item.rejected + item.waiting);
+  }
+}
+
+void BoxStore::remove(std::size_t topic_index, const std::string& ns, std::int64_t id) {
+  Topic& topic = topics_.at(topic_index);
+  const auto items = topic.items.find(ns);
+  if (items == topic.items.end()) {
+    return;
+  }
+  const auto item = items->second.find(id);
+  if (item == items->second.end()) {
+    return;
+  }
+  forget(topic, item->second);
+  items->second.erase(item);
+  if (items->second.empty()) {
+    topic.items.erase(items);
+  }
+}
+
+void BoxStore::clear(std::size_t topic_index) {
+  Topic& topic = topics_.at(topic_index);
+  if (!topic.items.empty()) {
+    ++boxes_revision_;
+  }
+  topic = Topic();
+}
+
+std::size_t BoxStore::expire(const ros::Time& now) {
+  const std::int64_t time = nanoseconds(now);
+  if (time < next_expiry_) {
+    return 0;
+  }
+  std::size_t expired = 0;
+  next_expiry_ = kForever;
+  for (Topic& topic : topics_) {
+    for (auto items = topic.items.begin(); items != topic.items.end();) {
+      for (auto next = items->second.begin(); next != items->second.end();) {
+        Item& item = next->second;
+        if (item.latest_expiry <= time) {
+          expired += std::max(item.boxes.size(), item.waiting);
+          forget(topic, item);
+          next = items->second.erase(next);
+          continue;
+        }
+        if (item.placed_expiry <= time) {
+          expired += item.boxes.size();
+          ++boxes_revision_;
+          item.boxes.clear();
+          item.placed_expiry = kForever;
+        }
+        next_expiry_ = std::min({next_expiry_, item.latest_expiry, item.placed_expiry});
+        ++next;
+      }
+      items = items->second.empty() ? topic.items.erase(items) : std::next(items);
+    }
+  }
+  return expired;
+}
+
+const Item* BoxStore::find(const Word& word) const {
+  const Items& all = topics_.at(word.topic).items;
+  const auto items = all.find(word.change.ns);
+  if (items == all.end()) {
+    return nullptr;
+  }
+  const auto item = items->second.find(word.change.id);
+  return item == items->second.end() ? nullptr : &item->second;
+}
+
+void BoxStore::setMissing(Topic& topic, Item& item, std::size_t waiting, std::size_t rejected) {
+  topic.waiting += waiting - item.waiting;
+  topic.rejected += rejected - item.rejected;
+  item.waiting = waiting;
+  item.rejected = rejected;
+}
+
+void BoxStore::forget(Topic& topic, Item& item) {
+  setMissing(topic, item, 0, 0);
+  if (!item.boxes.empty()) {
+    ++boxes_revision_;
+  }
+}
+
+}  // namespace box_query

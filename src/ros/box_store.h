@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What all topics say now, by (topic, ns, id).
+#pragma once
+
+#include "ros/box_source.h"
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <ros/time.h>
+
+namespace box_query {
+
+/// No end of life.
+constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
+
+/// One kSet change that the store has been told of, and that is still to be placed.
+struct Word {
+  std::size_t topic = 0;
+  std::uint64_t number = 0;  ///< later words have higher numbers
+  ros::Time received;
+  std::int64_t expiry = kForever;  ///< [ns] of ROS time
+  BoxChange change;
+};
+
+/// What a topic says under one (ns, id). While its latest word waits for a transform or is bad, the
+/// word before it stays placed.
+struct Item {
+  std::uint64_t first_word = 0;
+  std::uint64_t latest_word = 0;
+  std::uint64_t placed_word = 0;  ///< 0: none yet
+  std::int64_t latest_expiry = kForever;
+  std::int64_t placed_expiry = kForever;
+
+  // Of the latest word.
+  std::size_t waiting = 0;   ///< boxes that wait for their transform
+  std::size_t rejected = 0;  ///< boxes that were rejected or given up
+  std::string problem;       ///< of the rejected ones
+
+  // Of the placed word.
+  std::string label;
+  ros::Time stamp;
+  std::string locked_frame;  ///< frame of the boxes if they are locked to it, else empty
+  IdentifiedBoxes boxes;     ///< in the fixed frame, unless locked
+};
+
+/// Keeps the latest placed word of every item, and counts what is missing. Topics do not touch one
+/// another. Not thread safe.
+class BoxStore {
+ public:
+  using Items = std::map<std::string, std::map<std::int64_t, Item>>;  // ns, id
+
+  explicit BoxStore(std::size_t topics);
+
+  /// Hears a kSet change at ROS time `now`: counts its rejected boxes, and its others as waiting
+  /// until the word that is returned is placed or given up.
+  Word hear(std::size_t topic, BoxChange&& change, const ros::Time& now);
+
+  /// Whether the word still matters: its item is neither deleted, nor expired, nor overtaken by a
+  /// later word that was placed.
+  bool wants(const Word& word) const;
+
+  /// The boxes of a wanted word, now in the fixed frame (or in `locked_frame`, if not empty).
+  void place(Word&& word, const std::string& locked_frame);
+
+  /// Counts the boxes of a word that cannot be placed as rejected, unless a later word has come.
+  void giveUp(const Word& word, const std::string& problem);
+
+  void remove(std::size_t topic, const std::string& ns, std::int64_t id);
+  void clear(std::size_t topic);
+
+  /// Forgets what has ended by `now`. @return the number of boxes that were placed or waiting.
+  std::size_t expire(const ros::Time& now);
+
+  const Items& items(std::size_t topic) const { return topics_.at(topic).items; }
+  std::size_t waiting(std::size_t topic) const { return topics_.at(topic).waiting; }
+  std::size_t rejected(std::size_t topic) const { return topics_.at(topic).rejected; }
+
+  /// Nothing expires before this. [ns] of ROS time
+  std::int64_t nextExpiry() const { return next_expiry_; }
+  /// Grows with every change of boxes or names.
+  std::uint64_t boxesRevision() const { return boxes_revision_; }
+
+ private:
+  struct Topic {
+    Items items;
+    std::size_t waiting = 0;
+    std::size_t rejected = 0;
+  };
+
+  const Item* find(const Word& word) const;
+  static void setMissing(Topic& topic, Item& item, std::size_t waiting, std::size_t rejected);
+  void forget(Topic& topic, Item& item);
+
+  std::vector<Topic> topics_;
+  std::uint64_t last_word_ = 0;
+  std::int64_t next_expiry_ = kForever;
+  std::uint64_t boxes_revision_ = 0;
+};
+
+}  // namespace box_query

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ros/box_tracker.h"
+
+#include <algorithm>
+#include <numeric>
+#include <sstream>
+#include <tuple>
+
+namespace box_query {
+namespace {
+
+std::string boxesOf(std::size_t boxes, const std::string& topic) {
+  return std::to_string(boxes) + (boxes == 1 ? " box" : " boxes") + " of topic " + topic;
+}
+
+std::string nameOf(const BoxChange& change) {
+  return "box " + std::to_string(change.id) + " of namespace '" + change.ns + "'";
+}
+
+std::string describe(const WaitingList::Place& place, const std::string& fixed_frame) {
+  std::ostringstream text;
+  text << "the transform from frame '" << place.first << "' to '" << fixed_frame << "'";
+  if (!place.second.isZero()) {
+    text << " at time " << place.second;
+  }
+  return text.str();
+}
+
+WaitingList::Place placeOf(const BoxChange& change) {
+  return {change.frame, change.frame_locked ? ros::Time() : change.stamp};
+}
+
+}  // namespace
+
+BoxTracker::BoxTracker(const Parameters& parameters, const tf2::BufferCore& tf)
+    : parameters_(parameters),
+      tf_(tf),
+      topics_(parameters.box_topics.size()),
+      by_name_(parameters.box_topics.size()),
+      store_(parameters.box_topics.size()),
+      waiting_(static_cast<std::size_t>(parameters.max_waiting_boxes)) {
+  for (std::size_t topic = 0; topic < topics_.size(); ++topic) {
+    topics_[topic].state.parameters = parameters_.box_topics[topic];
+  }
+  std::iota(by_name_.begin(), by_name_.end(), std::size_t{0});
+  std::sort(by_name_.begin(), by_name_.end(), [this](std::size_t a, std::size_t b) {
+    return parameters_.box_topics[a].topic < parameters_.box_topics[b].topic;
+  });
+}
+
+void BoxTracker::receive(std::size_t topic_index, DecodedMessage&& message, bool known_type,
+                         const ros::Time& now) {
+  Topic& topic = topics_.at(topic_index);
+  ++changes_;
+  ++counts_.messages;
+  counts_.ignored_markers += message.ignored;
+  if (!message.problem.empty()) {
+    ++(known_type ? counts_.malformed_messages : counts_.unknown_type_messages);
+    topic.refusal = "The last message on topic " + topic.state.parameters.topic +
+                    " was refused: " + message.problem + ".";
+    return;
+  }
+  topic.refusal.clear();
+  topic.state.heard = true;
+  topic.state.last_message = now;
+  if (message.changes.empty()) {
+    noteStamp(now, now);
+  }
+  cached_place_.reset();
+  for (BoxChange& change : message.changes) {
+    apply(topic_index, std::move(change), now);
+  }
+}
+
+void BoxTracker::apply(std::size_t topic, BoxChange&& change, const ros::Time& now) {
+  if (change.kind == BoxChange::Kind::kClear) {
+    store_.clear(topic);
+    noteStamp(change.stamp, now);
+  } else if (change.kind == BoxChange::Kind::kRemove) {
+    store_.remove(topic, change.ns, change.id);
+    noteStamp(change.stamp, now);
+  } else {
+    const std::size_t rejected = change.rejected();
+    counts_.boxes += change.boxes.size() + rejected;
+    counts_.rejected_boxes += rejected;
+    for (std::size_t why = 0; rejected > 0 && why < kRejections; ++why) {
+      if (change.rejections[why] > 0) {
+        counts_.rejections[rejectionNames()[why]] += change.rejections[why];
+      }
+    }
+    Word word = store_.hear(topic, std::move(change), now);
+    if (!word.change.boxes.empty() || rejected == 0) {
+      place(std::move(word));
+    }
+  }
+}
+
+void BoxTracker::place(Word&& word) {
+  if (word.change.frame == parameters_.fixed_frame || word.change.boxes.empty()) {
+    counts_.avoided_transforms += word.change.boxes.size();
+    noteStamp(word.change.stamp, word.received);
+    store_.place(std::move(word), "");
+  } else if (const auto& known = pose(placeOf(word.change))) {
+    placeAt(*known, std::move(word));
+  } else {
+    wait(std::move(word));
+  }
+}
+
+void BoxTracker::placeAt(const FramePose& pose, Word&& word) {
+  noteStamp(word.change.stamp, word.received);
+  if (word.change.frame_locked) {
+    const std::string frame = word.change.frame;
+    locked_[frame] = pose;
+    store_.place(std::move(word), frame);
+    return;
+  }
+  bool finite = true;
+  for (IdentifiedBox& box : word.change.boxes) {
+    finite = moveBox(pose, box.box) && finite;
+  }
+  if (finite) {
+    store_.place(std::move(word), "");
+  } else {
+    counts_.rejected_boxes += word.change.boxes.size();
+    counts_.rejections[rejectionNames()[static_cast<std::size_t>(Rejection::kNotFinite)]] +=
+        word.change.boxes.size();
+    store_.giveUp(word, nameOf(word.change) + " is too far away for double numbers in frame '" +
+                            parameters_.fixed_frame + "'");
+  }
+}
+
+void BoxTracker::wait(Word&& word) {
+  const std::size_t boxes = word.change.boxes.size();
+  if (!waiting_.fits(boxes)) {
+    waiting_.purge([this](const Word& other) { return store_.wants(other); });
+  }
+  if (!waiting_.fits(boxes)) {
+    counts_.overflowed_boxes += boxes;
+    store_.giveUp(word, nameOf(word.change) + " cannot wait for " +
+                            describe(placeOf(word.change), parameters_.fixed_frame) +
+                            ": too many boxes wait already; publish the transform, or raise "
+                            "max_waiting_boxes");
+    return;
+  }
+  using std::chrono::duration;
+  const auto timeout =
+      std::chrono::duration_cast<Clock::duration>(duration<double>(parameters_.waiting_timeout));
+  waiting_.add(placeOf(word.change), std::move(word), Clock::now() + timeout);
+}
+
+void BoxTracker::settle(Clock::time_point now) {
+  if (waiting_.empty()) {
+    return;
+  }
+  cached_place_.reset();
+  waiting_.release([this](const WaitingList::Place& place) { return pose(place).has_value(); },
+                   [this](Word&& word) {
+                     if (store_.wants(word)) {
+                       ++changes_;
+                       placeAt(*cached_pose_, std::move(word));
+                     }
+                   });
+  waiting_.giveUp(now, [this](Word&& word) {
+    if (store_.wants(word)) {
+      ++changes_;
+      counts_.given_up_boxes += word.change.boxes.size();
+      store_.giveUp(word, nameOf(word.change) + " was given up: " +
+                              describe(placeOf(word.change), parameters_.fixed_frame) +
+                              " has not come in time; publish it, then the box again");
+    }
+  });
+}
+
+void BoxTracker::expire(const ros::Time& now) {
+  if (static_cast<std::int64_t>(now.toNSec()) >= store_.nextExpiry()) {
+    ++changes_;
+    counts_.expired_boxes += store_.expire(now);
+  }
+}
+
+void BoxTracker::followLockedFrames() {
+  for (auto& [frame, known] : locked_) {
+    const std::optional<FramePose> latest =
+        findPose(tf_, parameters_.fixed_frame, frame, ros::Time());
+    if (!(latest == known)) {
+      known = latest;
+      ++changes_;
+      ++moves_;
+    }
+  }
+}
+
+void BoxTracker::restart() {
+  for (std::size_t topic = 0; topic < topics_.size(); ++topic) {
+    store_.clear(topic);
+    topics_[topic].state.heard = false;
+    topics_[topic].state.last_message = ros::Time();
+    topics_[topic].refusal.clear();
+  }
+  waiting_.clear();
+  locked_.clear();
+  newest_stamp_ = ros::Time();
+  ++changes_;
+}
+
+void BoxTracker::noteStamp(const ros::Time& stamp, const ros::Time& now) {
+  newest_stamp_ = std::max(newest_stamp_, stamp.isZero() ? now : stamp);
+}
+
+const std::optional<FramePose>& BoxTracker::pose(const WaitingList::Place& place) {
+  if (cached_place_ != place) {
+    cached_pose_ = findPose(tf_, parameters_.fixed_frame, place.first, place.second);
+    cached_place_ = place;
+  }
+  return cached_pose_;
+}
+
+Draft BoxTracker::draft() {
+  Draft draft;
+  draft.snapshot.frame = parameters_.fixed_frame;
+  draft.snapshot.stamp = newest_stamp_;
+  draft.snapshot.topics.resize(topics_.size());
+  used_frames_.clear();
+  for (const std::size_t topic : by_name_) {
+    draftTopic(topic, draft);
+  }
+  for (auto frame = locked_.begin(); frame != locked_.end();) {
+    frame = used_frames_.count(frame->first) > 0 ? std::next(frame) : locked_.erase(frame);
+  }
+  return draft;
+}
+
+void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
+  const Topic& topic = topics_[index];
+  TopicState& state = draft.snapshot.topics[index];
+  state = topic.state;
+  state.waiting = store_.waiting(index);
+  state.rejected = store_.rejected(index);
+  std::string bad;         // first problem of a rejected box
+  std::string lost_frame;  // of locked boxes, which tf has lost
+
+  struct Row {
+    std::int64_t id;
+    const Item* item;
+    const OrientedBox* box;
+  };
+  std::vector<Row> rows;
+  for (const auto& [ns, items] : store_.items(index)) {
+    rows.clear();
+    for (const auto& entry : items) {
+      const Item& item = entry.second;
+      if (item.rejected > 0 && bad.empty()) {
+        bad = item.problem;
+      }
+      for (const IdentifiedBox& box : item.boxes) {
+        rows.push_back({box.id, &item, &box.box});
+      }
+    }
+    const auto before = [](const Row& a, const Row& b) { return a.id < b.id; };
+    if (!std::is_sorted(rows.begin(), rows.end(), before)) {  // boxes of lists interleave
+      std::sort(rows.begin(), rows.end(), before);
+    }
+    for (const Row& row : rows) {
+      OrientedBox box = *row.box;
+      if (!row.item->locked_frame.empty()) {
+        used_frames_.insert(row.item->locked_frame);
+        const std::optional<FramePose>& known = locked_[row.item->locked_frame];
+        if (!known || !moveBox(*known, box)) {
+          lost_frame = row.item->locked_frame;
+          ++state.waiting;
+          continue;
+        }
+      }
+      draft.boxes.emplace_back(box);
+      draft.snapshot.names.push_back({state.parameters.topic, ns, row.id, row.item->label});
+      draft.snapshot.stamps.push_back(row.item->stamp);
+    }
+  }
+
+  if (!topic.refusal.empty()) {
+    state.problem = topic.refusal;
+  } else if (state.rejected > 0) {
+    state.problem = boxesOf(state.rejected, state.parameters.topic) + " cannot be used: " + bad +
+                    ". Publish it again, correctly, or delete it.";
+  } else if (!lost_frame.empty()) {
+    state.problem = boxesOf(state.waiting, state.parameters.topic) + " wait for " +
+                    describe({lost_frame, ros::Time()}, parameters_.fixed_frame) + ": publish it.";
+  } else if (state.waiting > 0) {
+    state.problem = missingSentence(index);
+  }
+}
+
+std::string BoxTracker::missingSentence(std::size_t topic) const {
+  std::string text = boxesOf(store_.waiting(topic), parameters_.box_topics[topic].topic);
+  const WaitingList::Place* place =
+      waiting_.firstPlace(topic, [this](const Word& word) { return store_.wants(word); });
+  if (place) {
+    const std::string error =
+        missingPose(tf_, parameters_.fixed_frame, place->first, place->second);
+    text += " wait for " + describe(*place, parameters_.fixed_frame) +
+            (error.empty() ? "" : " (" + error + ")") + ": publish it.";
+  }
+  return text;
+}
+
+}  // namespace box_query

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ros/box_source.h"
+#include "ros/box_store.h"
+#include "ros/placement.h"
+
+#include <box_query/ros/scene_monitor.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <ros/time.h>
+#include <tf2/buffer_core.h>
+
+namespace box_query {
+
+/// What a snapshot is made of, before its scene is built.
+struct Draft {
+  Snapshot snapshot;       ///< without id and scene
+  std::vector<Box> boxes;  ///< of the scene
+};
+
+/// From decoded messages to placed boxes: the store, the boxes that wait for tf, the state of the
+/// topics. Not thread safe; knows no ROS but its time, and asks tf without waiting.
+class BoxTracker {
+ public:
+  using Clock = WaitingList::Clock;
+
+  /// The topics' names are resolved ones.
+  BoxTracker(const Parameters& parameters, const tf2::BufferCore& tf);
+
+  /// Applies a message that came at ROS time `now`, or refuses it whole.
+  void receive(std::size_t topic, DecodedMessage&& message, bool known_type, const ros::Time& now);
+
+  /// Places the boxes whose transform has come; gives up those that waited too long.
+  void settle(Clock::time_point now);
+  /// Drops boxes whose lifetime has ended.
+  void expire(const ros::Time& now);
+  /// Looks up the latest poses of frames that boxes are locked to.
+  void followLockedFrames();
+  /// Forgets all boxes, and that topics were heard.
+  void restart();
+
+  Draft draft();
+
+  bool isWaiting() const { return !waiting_.empty(); }
+  /// Grows with whatever a snapshot shows.
+  std::uint64_t changes() const { return changes_; }
+  /// Grows with the boxes of a snapshot and their names.
+  std::uint64_t boxesVersion() const { return store_.boxesRevision() + moves_; }
+  const MonitorStatistics& counts() const { return counts_; }
+
+ private:
+  struct Topic {
+    TopicState state;
+    std::string refusal;  ///< of its last message; empty if that was accepted
+  };
+
+  void apply(std::size_t topic, BoxChange&& change, const ros::Time& now);
+  void place(Word&& word);
+  void placeAt(const FramePose& pose, Word&& word);
+  void wait(Word&& word);
+  void noteStamp(const ros::Time& stamp, const ros::Time& now);
+  const std::optional<FramePose>& pose(const WaitingList::Place& place);
+  void draftTopic(std::size_t topic, Draft& draft);
+  std::string missingSentence(std::size_t topic) const;
+
+  const Parameters parameters_;
+  const tf2::BufferCore& tf_;
+  std::vector<Topic> topics_;
+  std::vector<std::size_t> by_name_;  ///< indices of the topics in the order of snapshots
+  BoxStore store_;
+  WaitingList waiting_;
+  std::map<std::string, std::optional<FramePose>> locked_;  ///< latest poses of locked frames
+  std::set<std::string> used_frames_;                       ///< of them, those in the draft
+  ros::Time newest_stamp_;
+  std::uint64_t changes_ = 0;
+  std::uint64_t moves_ = 0;  ///< of locked frames
+  MonitorStatistics counts_;
+
+  // The pose that was asked for last: most messages need only one.
+  std::optional<WaitingList::Place> cached_place_;
+  std::optional<FramePose> cached_pose_;
+};
+
+}  // namespace box_query

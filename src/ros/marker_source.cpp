@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// visualization_msgs/Marker and MarkerArray with the meaning that rviz 1.14 gives them: a message
+// is a list of changes, keyed by (ns, id). What differs, on purpose: colours do not matter here; a
+// CUBE_LIST without points is an empty list, where rviz shows an error and the previous list.
+#include "ros/box_source.h"
+
+#include <visualization_msgs/Marker.h>
+
+namespace box_query {
+namespace {
+
+using visualization_msgs::Marker;
+
+/// Bytes of a marker whose strings and arrays are empty, of a point, and of a colour.
+constexpr std::size_t kMarkerSize = 154;
+constexpr std::size_t kPointSize = 24;
+constexpr std::size_t kColorSize = 16;
+
+/// Lifetimes up to this are forever, as in rviz. [ns]
+constexpr std::int64_t kShortestLifetime = 100000;
+
+/// The n-th box of a list is n * 2^32 + the id of its marker: distinct, and stable as long as the
+/// list keeps its order. The first one, and a CUBE, have the marker's own id.
+std::int64_t boxId(std::int64_t marker_id, std::uint32_t n) {
+  return marker_id + (static_cast<std::int64_t>(n) << 32);
+}
+
+/// What a marker says of all its boxes.
+struct Shape {
+  Vector3 position;
+  Quaternion orientation;
+  Vector3 scale;
+};
+
+Shape readShape(WireReader& reader) {
+  Shape shape;
+  shape.position = reader.vector();
+  shape.orientation = reader.quaternion();
+  if (shape.orientation.coeffs().isZero(0.0)) {
+    shape.orientation.setIdentity();
+  }
+  shape.scale = reader.vector();
+  return shape;
+}
+
+/// Points are placed by the marker's pose; every box has its orientation and scale. An identity
+/// pose leaves them as they are, to the last bit.
+void addPoints(WireReader& reader, std::uint32_t points, const Shape& shape, BoxChange& change) {
+  const bool rotated = !shape.orientation.vec().isZero(0.0);
+  const Eigen::Matrix3d rotation = shape.orientation.normalized().toRotationMatrix();
+  change.boxes.reserve(points);
+  for (std::uint32_t n = 0; n < points; ++n) {
+    const Vector3 point = reader.vector();
+    const Vector3 offset = rotated ? Vector3(rotation * point) : point;
+    change.add(boxId(change.id, n), shape.position + offset, shape.orientation, shape.scale);
+  }
+}
+
+bool isBadFrame(const std::string& frame) {
+  return frame.empty() || frame.front() == '/';
+}
+
+/// Appends one marker. `boxes` counts those of the message so far.
+void readMarker(WireReader& reader, std::size_t max_boxes, std::size_t& boxes,
+                DecodedMessage& message) {
+  BoxChange change;
+  reader.skip(sizeof(std::uint32_t));  // header.seq
+  change.stamp = reader.time();
+  const std::string_view frame = reader.string();
+  change.ns = reader.string();
+  change.id = reader.number<std::int32_t>();
+  const auto type = reader.number<std::int32_t>();
+  const auto action = reader.number<std::int32_t>();
+  const Shape shape = readShape(reader);
+  reader.skip(kColorSize);
+  const std::int64_t lifetime = reader.duration();
+  change.frame_locked = reader.number<std::uint8_t>() != 0;
+  change.lifetime = lifetime > kShortestLifetime ? lifetime : 0;
+  change.frame = stripSlash(frame);
+
+  const std::uint32_t points = reader.count(kPointSize);
+  const bool adds = action == Marker::ADD && (type == Marker::CUBE || type == Marker::CUBE_LIST);
+  if (adds) {
+    boxes += type == Marker::CUBE ? 1 : points;
+    if (boxes > max_boxes) {
+      message.problem = tooManyBoxes(max_boxes);
+      return;
+    }
+  }
+  if (adds && type == Marker::CUBE_LIST) {
+    addPoints(reader, points, shape, change);
+  } else {
+    reader.skip(std::uint64_t{points} * kPointSize);
+  }
+  if (adds && type == Marker::CUBE) {
+    change.add(change.id, shape.position, shape.orientation, shape.scale);
+  }
+  reader.skip(std::uint64_t{reader.count(kColorSize)} * kColorSize);
+  change.label = reader.string();  // text
+  reader.string();                 // mesh_resource
+  reader.skip(1);                  // mesh_use_embedded_materials
+
+  if (adds && isBadFrame(change.frame)) {
+    const std::size_t good = change.boxes.size();
+    change.boxes.clear();
+    change.reject(Rejection::kFrame, good, "'" + std::string(frame) + "'");
+  } else if (action == Marker::DELETEALL) {
+    change.kind = BoxChange::Kind::kClear;  // whatever its ns is
+  } else if (action == Marker::DELETE) {
+    change.kind = BoxChange::Kind::kRemove;
+  } else if (action != Marker::ADD) {
+    change.reject(Rejection::kAction, 1, std::to_string(action));
+  } else if (!adds) {
+    change.kind = BoxChange::Kind::kRemove;  // what is no box replaces what was one
+    ++message.ignored;
+  }
+  if (reader.ok()) {
+    message.changes.push_back(std::move(change));
+  }
+}
+
+}  // namespace
+
+void decodeMarker(WireReader& reader, std::size_t max_boxes, DecodedMessage& message) {
+  std::size_t boxes = 0;
+  readMarker(reader, max_boxes, boxes, message);
+}
+
+void decodeMarkerArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message) {
+  const std::uint32_t markers = reader.count(kMarkerSize);
+  std::size_t boxes = 0;
+  for (std::uint32_t n = 0; n < markers && reader.ok() && message.problem.empty(); ++n) {
+    readMarker(reader, max_boxes, boxes, message);
+  }
+}
+
+}  // namespace box_query

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The walk: box message -> source -> store -> placement (BoxTracker) -> new Scene -> one pointer
+// swapped. Here are the threads: one hears boxes, one hears tf, and a worker places what waited and
+// builds ahead. Whoever asks builds too, if the worker has not yet.
+#include "ros/any_box_message.h"
+#include "ros/bell.h"
+#include "ros/box_tracker.h"
+#include "ros/transforms.h"
+
+#include <box_query/ros/scene_monitor.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include <ros/callback_queue.h>
+#include <ros/console.h>
+#include <ros/init.h>
+#include <ros/master.h>
+#include <ros/spinner.h>
+#include <ros/subscribe_options.h>
+#include <ros/subscriber.h>
+
+namespace box_query {
+namespace {
+
+using Clock = Bell::Clock;
+
+/// At the latest after this the worker looks at the clocks and at locked frames by itself.
+constexpr std::chrono::milliseconds kTick(50);
+/// Between looks for publishers that have gone.
+constexpr std::chrono::seconds kPublisherCheck(1);
+/// [s] The system clock may be set back by this much; boxes then live that much longer.
+constexpr double kClockStep = 1.0;
+
+/// The parameters with names as the rest of the program compares them.
+Parameters resolved(const ros::NodeHandle& nh, Parameters parameters) {
+  parameters.fixed_frame = stripSlash(parameters.fixed_frame);
+  std::set<std::string> names;
+  for (TopicParameters& topic : parameters.box_topics) {
+    topic.topic = nh.resolveName(topic.topic);
+    if (!names.insert(topic.topic).second) {
+      throw std::invalid_argument("box_topics names " + topic.topic + " twice: name it once");
+    }
+  }
+  return parameters;
+}
+
+}  // namespace
+
+struct SceneMonitor::Impl {
+  struct Topic {
+    ros::Subscriber subscriber;
+    bool pinned = false;  ///< roscpp has tied it to the type of a publisher
+  };
+
+  Impl(const ros::NodeHandle& node, const Parameters& given);
+  ~Impl();
+
+  void subscribe(std::size_t topic);
+  void subscribeAnew();
+  void receive(std::size_t topic, AnyBoxMessage& message);
+  void noticeTime();
+
+  SnapshotPtr newest();
+  SnapshotPtr build();
+  SnapshotPtr keep(SnapshotPtr handed_out);
+
+  void work();
+  void tick();
+  bool queriedLately() const;
+
+  const Parameters parameters;
+  ros::NodeHandle nh;
+  Bell bell;                           ///< for the worker
+  std::atomic<bool> tf_wanted{false};  ///< transforms ring the bell
+  Transforms transforms;
+  std::vector<Topic> topics;  ///< of the constructor, then of the worker
+
+  std::mutex mutex;  ///< guards the next four
+  BoxTracker tracker;
+  ros::Time now;  ///< when last looked at
+  std::uint64_t builds = 0;
+  std::uint64_t unbuilt_changes = 0;
+
+  std::mutex build_mutex;           ///< one at a time; locked before `mutex`
+  SnapshotPtr snapshot;             ///< never null; swapped atomically
+  std::uint64_t shown_changes = 0;  ///< of the tracker, that the snapshot shows; with both locked
+  std::uint64_t shown_boxes = 0;
+  std::atomic<Clock::rep> last_query{0};
+
+  std::mutex kept_mutex;
+  std::deque<SnapshotPtr> kept;
+  std::atomic<std::uint64_t> last_kept{0};
+
+  std::mutex changed_mutex;  ///< held while `changed` runs
+  std::function<void()> changed;
+  std::uint64_t announced_boxes = 0;  ///< of the worker
+
+  std::atomic<bool> stopping{false};
+  ros::CallbackQueue queue;
+  ros::AsyncSpinner spinner;
+  std::thread worker;
+};
+
+SceneMonitor::Impl::Impl(const ros::NodeHandle& node, const Parameters& given)
+    : parameters(resolved(node, given)),
+      nh(node),
+      transforms(node, ros::Duration(parameters.transform_history),
+                 [this] {
+                   if (tf_wanted) {
+                     bell.ring();
+                   }
+                 }),
+      topics(parameters.box_topics.size()),
+      tracker(parameters, transforms.buffer()),
+      now(ros::Time::now()),
+      spinner(1, &queue) {
+  Draft empty = tracker.draft();
+  empty.snapshot.id = 1;
+  snapshot = std::make_shared<const Snapshot>(std::move(empty.snapshot));
+  for (std::size_t topic = 0; topic < topics.size(); ++topic) {
+    subscribe(topic);
+  }
+  spinner.start();
+  worker = std::thread([this] { work(); });
+}
+
+SceneMonitor::Impl::~Impl() {
+  stopping = true;
+  bell.ring();
+  worker.join();
+  for (Topic& topic : topics) {
+    topic.subscriber.shutdown();  // waits for a callback that runs
+  }
+  spinner.stop();
+}
+
+void SceneMonitor::Impl::subscribe(std::size_t topic) {
+  // Each message changes what the ones before said, so none may be dropped: the queue is unbounded.
+  // Decoding is faster than the network.
+  constexpr std::uint32_t kUnbounded = 0;
+  const auto max_boxes = static_cast<std::size_t>(parameters.max_boxes_per_message);
+  const boost::function<void(const boost::shared_ptr<AnyBoxMessage>&)> callback =
+      [this, topic](const boost::shared_ptr<AnyBoxMessage>& message) { receive(topic, *message); };
+  ros::SubscribeOptions options;
+  options.initByFullCallbackType<const boost::shared_ptr<AnyBoxMessage>&>(
+      parameters.box_topics[topic].topic, kUnbounded, callback,
+      [max_boxes] { return boost::make_shared<AnyBoxMessage>(max_boxes); });
+  options.callback_queue = &queue;
+  options.transport_hints = ros::TransportHints().tcpNoDelay();
+  topics[topic].subscriber = nh.subscribe(options);
+  topics[topic].pinned = false;
+}
+
+/// The first publisher pins a subscription of any type to its own type for good, and publishers of
+/// another are refused. Where the last publisher has gone, the next one may be of any type again.
+void SceneMonitor::Impl::subscribeAnew() {
+  for (std::size_t topic = 0; topic < topics.size() && !stopping; ++topic) {
+    Topic& of = topics[topic];
+    if (of.subscriber.getNumPublishers() > 0) {
+      of.pinned = true;
+    } else if (of.pinned && ros::master::check()) {  // registering waits for a master that is gone
+      of.subscriber.shutdown();
+      subscribe(topic);
+    }
+  }
+}
+
+void SceneMonitor::Impl::receive(std::size_t topic, AnyBoxMessage& message) {
+  const std::string problem = message.decoded.problem;
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    noticeTime();
+    tracker.receive(topic, std::move(message.decoded), message.source != nullptr, now);
+    tf_wanted = tracker.isWaiting();
+  }
+  bell.ring();
+  if (!problem.empty()) {
+    ROS_WARN_STREAM_THROTTLE(5.0, "box_query: a message on topic "
+                                      << parameters.box_topics[topic].topic
+                                      << " was refused: " << problem);
+  }
+}
+
+/// Reads the ROS clock. A clock that was set back (a bag that starts again) makes everything known
+/// so far a thing of the future; tf2 itself would go on answering from it until its next message.
+void SceneMonitor::Impl::noticeTime() {
+  const ros::Time time = ros::Time::now();
+  if (time.toSec() + (ros::Time::isSimTime() ? 0.0 : kClockStep) < now.toSec()) {
+    ROS_WARN_STREAM("box_query: time went back from " << now << " to " << time
+                                                      << "; boxes and transforms are forgotten");
+    transforms.clear();
+    tracker.restart();
+  }
+  now = time;
+}
+
+/// A snapshot of all that is known now, from whoever makes it first.
+SnapshotPtr SceneMonitor::Impl::newest() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    noticeTime();
+    tracker.expire(now);
+    tracker.followLockedFrames();
+    if (tracker.changes() == shown_changes) {
+      return std::atomic_load(&snapshot);
+    }
+  }
+  return build();
+}
+
+SnapshotPtr SceneMonitor::Impl::build() {
+  const std::lock_guard<std::mutex> building(build_mutex);
+  std::unique_lock<std::mutex> lock(mutex);
+  const std::uint64_t changes = tracker.changes();
+  const std::uint64_t boxes = tracker.boxesVersion();
+  if (changes == shown_changes) {
+    return std::atomic_load(&snapshot);  // somebody else was faster
+  }
+  Draft draft = tracker.draft();
+  unbuilt_changes += changes - shown_changes;
+  lock.unlock();
+
+  const SnapshotPtr before = std::atomic_load(&snapshot);
+  draft.snapshot.id = before->id + 1;
+  const bool same = boxes == shown_boxes;
+  draft.snapshot.scene = same ? before->scene : Scene(std::move(draft.boxes));
+  const auto after = std::make_shared<const Snapshot>(std::move(draft.snapshot));
+
+  lock.lock();
+  if (!same) {
+    ++builds;
+    --unbuilt_changes;
+  }
+  shown_changes = changes;
+  shown_boxes = boxes;
+  std::atomic_store(&snapshot, after);
+  return after;
+}
+
+/// Remembers what somebody may ask for by its id.
+SnapshotPtr SceneMonitor::Impl::keep(SnapshotPtr handed_out) {
+  if (handed_out->id > last_kept) {
+    const std::lock_guard<std::mutex> lock(kept_mutex);
+    if (handed_out->id > last_kept) {
+      kept.push_back(handed_out);
+      if (kept.size() > static_cast<std::size_t>(parameters.kept_scenes)) {
+        kept.pop_front();
+      }
+      last_kept = handed_out->id;
+    }
+  }
+  return handed_out;
+}
+
+void SceneMonitor::Impl::work() {
+  Clock::time_point publisher_check = Clock::now();
+  while (!stopping) {
+    const std::uint64_t rings = bell.rings();
+    tick();
+    if (Clock::now() >= publisher_check) {
+      subscribeAnew();
+      publisher_check = Clock::now() + kPublisherCheck;
+    }
+    bell.waitPast(rings, Clock::now() + kTick);
+  }
+}
+
+void SceneMonitor::Impl::tick() {
+  std::uint64_t boxes = 0;
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    noticeTime();
+    tracker.expire(now);
+    tracker.settle(Clock::now());
+    tracker.followLockedFrames();
+    tf_wanted = tracker.isWaiting();
+    boxes = tracker.boxesVersion();
+  }
+  if (queriedLately()) {
+    build();
+  }
+  if (boxes != announced_boxes) {
+    announced_boxes = boxes;
+    const std::lock_guard<std::mutex> lock(changed_mutex);
+    if (changed) {
+      changed();
+    }
+  }
+}
+
+bool SceneMonitor::Impl::queriedLately() const {
+  const Clock::duration query(last_query);  // since the clock's epoch, 0: none yet
+  const Clock::duration since = Clock::now().time_since_epoch() - query;
+  return query.count() != 0 &&
+         std::chrono::duration<double>(since).count() < parameters.build_ahead;
+}
+
+SceneMonitor::SceneMonitor(const ros::NodeHandle& nh, const Parameters& parameters)
+    : impl_(std::make_unique<Impl>(nh, parameters)) {}
+
+SceneMonitor::~SceneMonitor() = default;
+
+SnapshotPtr SceneMonitor::scene() const {
+  return impl_->keep(std::atomic_load(&impl_->snapshot));
+}
+
+SnapshotPtr SceneMonitor::currentScene() {
+  impl_->last_query = Clock::now().time_since_epoch().count();
+  return impl_->keep(impl_->newest());
+}
+
+SnapshotPtr SceneMonitor::sceneById(std::uint64_t id) const {
+  const std::lock_guard<std::mutex> lock(impl_->kept_mutex);
+  const auto found = std::find_if(impl_->kept.begin(), impl_->kept.end(),
+                                  [id](const SnapshotPtr& snapshot) { return snapshot->id == id; });
+  return found == impl_->kept.end() ? nullptr : *found;
+}
+
+std::string SceneMonitor::lookUpTransform(const std::string& target, const std::string& source,
+                                          const ros::Time& stamp, double timeout,
+                                          geometry_msgs::TransformStamped& transform) const {
+  {
+    const std::lock_guard<std::mutex> lock(impl_->mutex);
+    impl_->noticeTime();
+  }
+  return impl_->transforms.lookUp(target, source, stamp, timeout, transform);
+}
+
+void SceneMonitor::setChangedCallback(std::function<void()> changed) {
+  const std::lock_guard<std::mutex> lock(impl_->changed_mutex);
+  impl_->changed = std::move(changed);
+}
+
+MonitorStatistics SceneMonitor::statistics() const {
+  const std::lock_guard<std::mutex> lock(impl_->mutex);
+  MonitorStatistics counts = impl_->tracker.counts();
+  counts.builds = impl_->builds;
+  counts.avoided_builds = impl_->unbuilt_changes;
+  return counts;
+}
+
+const Parameters& SceneMonitor::parameters() const {
+  return impl_->parameters;
+}
+
+}  // namespace box_query

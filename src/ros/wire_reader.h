@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Reading of ROS-serialised bytes that trusts none of them.
+#pragma once
+
+#include <box_query/geometry.h>
+
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include <ros/time.h>
+
+namespace box_query {
+
+/// Reads the fields of a message in their order. Once something does not fit, ok() is false for
+/// good and everything reads as zero or empty, so that a decoder need look only once, at its end.
+/// Nothing is allocated here; views are into the bytes.
+class WireReader {
+ public:
+  WireReader(const std::uint8_t* data, std::size_t size) : begin_(data), next_(data), left_(size) {}
+
+  bool ok() const { return failure_.empty(); }
+  /// What did not fit; empty if ok().
+  const std::string& failure() const { return failure_; }
+  std::size_t left() const { return left_; }
+
+  /// A number. The wire is little endian, as every machine that roscpp runs on.
+  template <typename T>
+  T number() {
+    static_assert(std::is_arithmetic<T>::value, "numbers only");
+    T value = 0;
+    if (const std::uint8_t* bytes = take(sizeof(T))) {
+      std::memcpy(&value, bytes, sizeof(T));
+    }
+    return value;
+  }
+
+  std::string_view string() {
+    const auto size = number<std::uint32_t>();
+    const std::uint8_t* bytes = take(size);
+    return bytes ? std::string_view(reinterpret_cast<const char*>(bytes), size)
+                 : std::string_view();
+  }
+
+  /// The length of an array whose elements take at least `element_size` bytes each: 0 and a failure
+  /// if so many cannot follow. Memory that is reserved for the result is bounded by the message.
+  std::uint32_t count(std::size_t element_size) {
+    const auto elements = number<std::uint32_t>();
+    if (elements > left_ / element_size) {
+      fail("an array claims " + std::to_string(elements) + " elements");
+      return 0;
+    }
+    return elements;
+  }
+
+  void skip(std::uint64_t size) { take(size); }
+
+  ros::Time time() {
+    ros::Time value;
+    value.sec = number<std::uint32_t>();
+    value.nsec = number<std::uint32_t>();
+    if (value.nsec >= 1000000000U) {  // what ros::Time's own functions throw at
+      fail("a time has " + std::to_string(value.nsec) + " nanoseconds");
+      return ros::Time();
+    }
+    return value;
+  }
+
+  /// A duration in nanoseconds: any two 32-bit numbers fit.
+  std::int64_t duration() {
+    const std::int64_t seconds = number<std::int32_t>();
+    return seconds * 1000000000 + number<std::int32_t>();
+  }
+
+  Vector3 vector() {
+    const double x = number<double>();
+    const double y = number<double>();
+    return {x, y, number<double>()};
+  }
+
+  /// geometry_msgs/Quaternion: x, y, z, w.
+  Quaternion quaternion() {
+    const Vector3 imaginary = vector();
+    return {number<double>(), imaginary.x(), imaginary.y(), imaginary.z()};
+  }
+
+ private:
+  const std::uint8_t* take(std::uint64_t size) {
+    if (size > left_) {
+      fail("a field of " + std::to_string(size) + " bytes is expected");
+      return nullptr;
+    }
+    const std::uint8_t* bytes = next_;
+    next_ += size;
+    left_ -= static_cast<std::size_t>(size);
+    return bytes;
+  }
+
+  void fail(const std::string& what) {
+    if (ok()) {
+      failure_ = what + " at byte " + std::to_string(next_ - begin_) + ", where " +
+                 std::to_string(left_) + " bytes remain";
+    }
+    next_ += left_;
+    left_ = 0;
+  }
+
+  const std::uint8_t* begin_;
+  const std::uint8_t* next_;
+  std::size_t left_;
+  std::string failure_;
+};
+
+}  // namespace box_query
