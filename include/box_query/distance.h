@@ -33,8 +33,9 @@ bool isClear(const Segment& segment, const AlignedBox& box, double radius) noexc
 bool isClear(const Segment& segment, const OrientedBox& box, double radius) noexcept;
 
 /// Smallest parameter t in [0, 1] whose point is within `radius` of the box; +inf if there is none
-/// (isClear decides). Correctly rounded for radius 0; otherwise at most 4 ulp before the exact
-/// value and never after it.
+/// (isClear decides). For radius 0 the exact value rounded to nearest, ties to even: the t_enter of
+/// findIntersection. Otherwise it is the root of a quadratic, and the result is the largest double
+/// that is not greater: never late, and unique. 0 if the segment starts within the radius.
 /// @pre isValid(segment) && isValid(box), radius finite and >= 0
 double blockedAt(const Segment& segment, const AlignedBox& box, double radius) noexcept;
 double blockedAt(const Segment& segment, const OrientedBox& box, double radius) noexcept;

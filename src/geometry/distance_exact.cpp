@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/distance_exact.h"
+
+#include "exact/rounding.h"
+
+#include <cmath>
+
+namespace box_query::exact {
+namespace {
+
+/// Signed excess of the point at t over the slab of an axis, times t.den.
+Dyadic excess(const Slabs& slabs, std::size_t axis, const Parameter& t) {
+  const Dyadic x = slabs.direction[axis] * t.num;
+  const Dyadic over = x - slabs.above[axis] * t.den;
+  if (over.sign() > 0) {
+    return over;
+  }
+  const Dyadic under = x - slabs.below[axis] * t.den;
+  return under.sign() < 0 ? under : Dyadic();
+}
+
+/// The sign of f'(t).
+int slopeSign(const Slabs& slabs, const Parameter& t) {
+  Dyadic slope;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (slabs.direction[i].sign() != 0) {
+      slope += slabs.direction[i] * excess(slabs, i, t);
+    }
+  }
+  return slope.sign();
+}
+
+/// f(t) in the world.
+Ratio squaredDistance(const SegmentAtBox& segment, const Parameter& t) {
+  Dyadic sum;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Dyadic e = excess(segment.slabs, i, t);
+    sum += e * e;
+  }
+  return {sum, t.den * t.den * segment.stretch_squared};
+}
+
+/// Shrinks (before, after] until no break point lies inside. `isBefore` says of a parameter whether
+/// the one looked for comes later; it is false at `after`.
+template <typename Predicate>
+void narrowToPiece(const Slabs& slabs, Parameter& before, Parameter& after,
+                   const Predicate& isBefore) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (slabs.direction[i].sign() == 0) {
+      continue;
+    }
+    for (const Dyadic* face : {&slabs.below[i], &slabs.above[i]}) {
+      Parameter t{*face, slabs.direction[i]};
+      if (t.den.sign() < 0) {
+        t = {-t.num, -t.den};
+      }
+      if (compare(before, t) < 0 && compare(t, after) < 0) {
+        (isBefore(t) ? before : after) = t;
+      }
+    }
+  }
+}
+
+/// f(t) = a t^2 + 2 b t + c, stretched, on one piece.
+struct Quadratic {
+  Dyadic a;
+  Dyadic b;
+  Dyadic c;
+};
+
+/// @pre no break point lies between the two parameters
+Quadratic quadraticBetween(const Slabs& slabs, const Parameter& before, const Parameter& after) {
+  const Parameter middle{before.num * after.den + after.num * before.den,
+                         (before.den * after.den).scaled(1)};
+  Quadratic f;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const int side = excess(slabs, i, middle).sign();
+    if (side != 0) {
+      const Dyadic& d = slabs.direction[i];
+      const Dyadic& face = side > 0 ? slabs.above[i] : slabs.below[i];
+      f.a += d * d;
+      f.b -= d * face;
+      f.c += face * face;
+    }
+  }
+  return f;
+}
+
+/// Smallest parameter in [0, 1] where f is smallest: where f' first is not negative.
+Parameter firstMinimum(const Slabs& slabs) {
+  Parameter before{0.0, 1.0};
+  if (slopeSign(slabs, before) >= 0) {
+    return before;
+  }
+  Parameter after{1.0, 1.0};
+  if (slopeSign(slabs, after) < 0) {
+    return after;
+  }
+  narrowToPiece(slabs, before, after, [&](const Parameter& t) { return slopeSign(slabs, t) < 0; });
+  // On this piece f' = 2 (a t + b) rises from a negative value, so that a > 0.
+  const Quadratic f = quadraticBetween(slabs, before, after);
+  return {-f.b, f.a};
+}
+
+/// floor(log2 x) for x > 0.
+int topBit(const Dyadic& x) {
+  return static_cast<int>(boost::multiprecision::msb(x.mantissa())) + x.exponent();
+}
+
+/// The sign of a - sqrt(b) + sqrt(c).
+int signWithRoots(const Dyadic& a, const Dyadic& b, const Dyadic& c) {
+  const int roots = compare(c, b);
+  if (a.sign() * roots >= 0) {
+    return a.sign() != 0 ? a.sign() : roots;
+  }
+  // The sign of a^2 - (sqrt(c) - sqrt(b))^2 = (a^2 - b - c) + 2 sqrt(b c) says which one is larger.
+  const Dyadic rest = a * a - b - c;
+  const int larger =
+      rest.sign() >= 0 && (b * c).sign() > 0
+          ? 1
+          : (rest.sign() >= 0 ? rest.sign() : compare((b * c).scaled(2), rest * rest));
+  return larger * a.sign();
+}
+
+}  // namespace
+
+SegmentAtBox segmentAtBox(const Segment& segment, const AlignedBox& box) {
+  return {slabs(component(segment), box), 1.0};
+}
+
+SegmentAtBox segmentAtBox(const Segment& segment, const OrientedBox& box) {
+  Dyadic norm_squared;
+  for (int i = 0; i < 4; ++i) {
+    const Dyadic q = box.orientation.coeffs()[i];
+    norm_squared += q * q;
+  }
+  return {slabs(component(segment), box), norm_squared * norm_squared};
+}
+
+SegmentAtBox segmentAtBox(const Segment& segment, const Box& box) {
+  if (const auto* aligned = std::get_if<AlignedBox>(&box)) {
+    return segmentAtBox(segment, *aligned);
+  }
+  return segmentAtBox(segment, *std::get_if<OrientedBox>(&box));
+}
+
+Nearest nearest(const SegmentAtBox& segment) {
+  const Parameter t = firstMinimum(segment.slabs);
+  return {t, squaredDistance(segment, t)};
+}
+
+int compare(const Root& a, const Root& b) {
+  return signWithRoots(b.s * a.p - a.s * b.p, b.s * b.s * a.q, a.s * a.s * b.q);
+}
+
+double roundedDown(const Root& root) {
+  if (root.p.sign() <= 0) {
+    return 0.0;
+  }
+  const int k = -topBit(root.p);  // neither overflow nor harmful underflow for p in [1, 2)
+  const Dyadic p = root.p.scaled(k);
+  const Dyadic q = root.q.scaled(2 * k);
+  const Dyadic s = root.s.scaled(k);
+  // (p - sqrt(q)) / s without cancellation, good to a few ulp; its neighbours are decided exactly.
+  double t = roundedQuotient(p * p - q, s * (p + roundedSqrt(q, 1.0)));
+  const auto isNotAfter = [&](double candidate) {
+    const Dyadic rest = p - s * candidate;
+    return rest.sign() >= 0 && q <= rest * rest;
+  };
+  while (!isNotAfter(t)) {
+    t = std::nextafter(t, 0.0);
+  }
+  for (double next = std::nextafter(t, 1.0); next > t && isNotAfter(next);
+       next = std::nextafter(t, 1.0)) {
+    t = next;
+  }
+  return t;
+}
+
+std::optional<Root> firstWithin(const SegmentAtBox& segment, double radius) {
+  const Ratio limit{Dyadic(radius) * radius, 1.0};
+  const auto isOutside = [&](const Parameter& t) {
+    return compare(squaredDistance(segment, t), limit) > 0;
+  };
+  Parameter before{0.0, 1.0};
+  if (!isOutside(before)) {
+    return Root{0.0, 0.0, 1.0};
+  }
+  Parameter after = firstMinimum(segment.slabs);
+  if (isOutside(after)) {
+    return std::nullopt;
+  }
+  narrowToPiece(segment.slabs, before, after, isOutside);
+  if (compare(squaredDistance(segment, after), limit) == 0) {
+    return Root{after.num, 0.0, after.den};
+  }
+  const Quadratic f = quadraticBetween(segment.slabs, before, after);
+  const Dyadic c = f.c - limit.num * segment.stretch_squared;
+  return Root{-f.b, f.b * f.b - f.a * c, f.a};
+}
+
+}  // namespace box_query::exact
