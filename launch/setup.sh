@@ -124,7 +124,7 @@ bq_logged() {
     "$@" >"$log" 2>&1 || status=$?
   fi
   if [ "$status" != 0 ]; then
-    [ "${bq_verbose:-no}" = yes ] || cat "$log" >&2
+    [ "${bq_verbose:-no}" = yes ] || grep -v 'Built target' "$log" >&2
     echo "That failed: $*" >&2
     echo "What it said is above and in $log" >&2
     return 1
