@@ -12,20 +12,21 @@ export PATH=/usr/bin:$PATH
 bq_packages() {
   case $bq_ros/$1 in
     */build) echo build-essential cmake libeigen3-dev libboost-dev ;;&
+    */test) echo libgmp-dev libgtest-dev ;;&
     debian/build) echo catkin libroscpp-dev libtf2-dev libtf2-ros-dev libtf2-msgs-dev libstd-msgs-dev \
       libgeometry-msgs-dev libvisualization-msgs-dev ros-std-msgs ros-geometry-msgs \
       ros-visualization-msgs ros-message-generation ros-message-runtime ;;
     debian/demo) echo python3-roslaunch python3-rosservice python3-rospy python3-std-msgs \
       python3-geometry-msgs python3-visualization-msgs tf2-tools ;;
     debian/viewer) echo rviz ;;
-    debian/test) echo libgtest-dev librostest-dev python3-rostest ;;
+    debian/test) echo librostest-dev python3-rostest ;;
     debian/checks) echo catkin-lint clang-format ;;
     noetic/build) echo ros-noetic-catkin ros-noetic-roscpp ros-noetic-tf2 ros-noetic-tf2-ros \
       ros-noetic-std-msgs ros-noetic-geometry-msgs ros-noetic-visualization-msgs \
       ros-noetic-message-generation ros-noetic-message-runtime ;;
     noetic/demo) echo ros-noetic-roslaunch ros-noetic-rosservice ros-noetic-rospy ;;
     noetic/viewer) echo ros-noetic-rviz ;;
-    noetic/test) echo libgtest-dev ros-noetic-rostest ;;
+    noetic/test) echo ros-noetic-rostest ;;
     noetic/checks) echo python3-catkin-lint clang-format ;;
   esac
 }
