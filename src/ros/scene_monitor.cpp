@@ -61,7 +61,7 @@ struct SceneMonitor::Impl {
   };
 
   Impl(const ros::NodeHandle& node, const Parameters& given);
-  ~Impl();
+  void stop();
 
   void subscribe(std::size_t topic);
   void subscribeAnew();
@@ -132,7 +132,8 @@ SceneMonitor::Impl::Impl(const ros::NodeHandle& node, const Parameters& given)
   worker = std::thread([this] { work(); });
 }
 
-SceneMonitor::Impl::~Impl() {
+/// Ends the threads: only then may anything that they use be destroyed.
+void SceneMonitor::Impl::stop() {
   stopping = true;
   bell.ring();
   worker.join();
@@ -306,7 +307,9 @@ bool SceneMonitor::Impl::queriedLately() const {
 SceneMonitor::SceneMonitor(const ros::NodeHandle& nh, const Parameters& parameters)
     : impl_(std::make_unique<Impl>(nh, parameters)) {}
 
-SceneMonitor::~SceneMonitor() = default;
+SceneMonitor::~SceneMonitor() {
+  impl_->stop();
+}
 
 SnapshotPtr SceneMonitor::scene() const {
   return impl_->keep(std::atomic_load(&impl_->snapshot));

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Simulated time that stands still, runs, and goes back. The test is the clock.
+#include "rostest/monitor_fixture.h"
+
+#include <ros/init.h>
+#include <rosgraph_msgs/Clock.h>
+
+namespace box_query {
+namespace {
+
+using visualization_msgs::Marker;
+
+class SceneMonitorClock : public testing::Test {
+ protected:
+  /// Sets the ROS time of this process, monitor included.
+  void setTime(double seconds) {
+    rosgraph_msgs::Clock message;
+    message.clock = ros::Time(seconds);
+    ASSERT_TRUE(clock_.isHeard());
+    clock_.say(message);
+    ASSERT_TRUE(eventually([&] { return ros::Time::now() == message.clock; }));
+  }
+
+  Talker<rosgraph_msgs::Clock> clock_{"/clock"};
+};
+
+TEST_F(SceneMonitorClock, EndsLifetimesAndTimeoutsToTheNanosecond) {
+  setTime(100.0);
+  Parameters parameters = listenTo({"clock_life"});
+  parameters.box_topics[0].timeout = 2.0;
+  SceneMonitor monitor(ros::NodeHandle(), parameters);
+  ArrayTalker talker("clock_life");
+  ASSERT_TRUE(talker.isHeard());
+  Marker mortal = cube("map", 1, 1.0);
+  mortal.lifetime = ros::Duration(1.5);
+  talker.say(array({mortal, cube("map", 2, 2.0)}));
+  ASSERT_TRUE(hasBoxes(monitor, 2));
+  setTime(101.499999999);
+  EXPECT_EQ(monitor.currentScene()->scene.size(), 2U);
+  setTime(101.5);
+  EXPECT_EQ(monitor.currentScene()->scene.size(), 1U)
+      << "at the query, not at the worker's leisure";
+  setTime(102.0);
+  EXPECT_TRUE(completenessOf(monitor).complete);
+  EXPECT_EQ(monitor.currentScene()->age(ros::Time::now()), 2.0) << "no stamp: that of receipt";
+  setTime(102.000000001);
+  EXPECT_FALSE(completenessOf(monitor).complete);
+}
+
+TEST_F(SceneMonitorClock, LooksUpTransformsWhileTheClockStands) {
+  setTime(200.0);
+  SceneMonitor monitor(ros::NodeHandle(), listenTo({"clock_stands"}));
+  geometry_msgs::TransformStamped found;
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_NE(monitor.lookUpTransform("map", "absent", ros::Time(), 0.1, found), "");
+  const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - start;
+  EXPECT_LT(waited.count(), 5.0);
+}
+
+TEST_F(SceneMonitorClock, GivesUpWaitingBoxesWhileTheClockStands) {
+  setTime(300.0);
+  Parameters parameters = listenTo({"clock_gives_up"});
+  parameters.waiting_timeout = 0.1;
+  SceneMonitor monitor(ros::NodeHandle(), parameters);
+  ArrayTalker talker("clock_gives_up");
+  ASSERT_TRUE(talker.isHeard());
+  talker.say(array({cube("absent", 1, 1.0)}));
+  EXPECT_TRUE(eventually([&] { return monitor.statistics().given_up_boxes == 1; }));
+}
+
+TEST_F(SceneMonitorClock, ForgetsWhatItKnewWhenTimeGoesBack) {
+  setTime(500.0);
+  SceneMonitor monitor(ros::NodeHandle(), listenTo({"clock_back"}));
+  ArrayTalker talker("clock_back");
+  Talker<tf2_msgs::TFMessage> tf("/tf");
+  ASSERT_TRUE(talker.isHeard() && tf.isHeard());
+  tf.say(transform("map", "back", ros::Time(499), 1.0));
+  geometry_msgs::TransformStamped found;
+  ASSERT_EQ(monitor.lookUpTransform("map", "back", ros::Time(), 10.0, found), "");
+  talker.say(array({cube("map", 1, 1.0), cube("back", 2, 2.0)}));
+  ASSERT_TRUE(hasBoxes(monitor, 2));
+  const std::uint64_t id = monitor.currentScene()->id;
+
+  setTime(50.0);
+  const SnapshotPtr after = monitor.currentScene();
+  EXPECT_EQ(after->scene.size(), 0U);
+  EXPECT_GT(after->id, id);
+  EXPECT_FALSE(after->completeness(ros::Time::now()).complete);
+  EXPECT_NE(monitor.lookUpTransform("map", "back", ros::Time(), 0.0, found), "")
+      << "a transform of the future";
+
+  tf.say(transform("map", "back", ros::Time(50), 7.0));
+  talker.say(array({cube("back", 2, 2.0)}));
+  ASSERT_TRUE(hasBoxes(monitor, 1));
+  EXPECT_EQ(boxOf(*monitor.currentScene(), 0).center, Vector3(9.0, 0.0, 0.0));
+  EXPECT_TRUE(completenessOf(monitor).complete);
+}
+
+}  // namespace
+}  // namespace box_query
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "test_scene_monitor_clock");
+  const ros::NodeHandle keeps_ros_alive;
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Boxes in other frames than the fixed one: transforms that are there, late, missing, moving.
+#include "rostest/monitor_fixture.h"
+
+#include <cmath>
+
+#include <ros/init.h>
+
+namespace box_query {
+namespace {
+
+using visualization_msgs::Marker;
+
+constexpr double kQuarterTurn = 1.5707963267948966;
+
+/// A monitor with one topic, its publisher and tf, all connected.
+class SceneMonitorTf : public testing::Test {
+ protected:
+  void start(Parameters parameters) {
+    monitor_ = std::make_unique<SceneMonitor>(ros::NodeHandle(), parameters);
+    talker_ = std::make_unique<ArrayTalker>(parameters.box_topics[0].topic);
+    tf_ = std::make_unique<Talker<tf2_msgs::TFMessage>>("/tf");
+    ASSERT_TRUE(talker_->isHeard() && tf_->isHeard());
+  }
+
+  void say(const Marker& marker) { talker_->say(array({marker})); }
+
+  /// Says it at that time, and waits until the monitor knows it.
+  void move(const std::string& child, const ros::Time& stamp, double x, double yaw = 0.0) {
+    tf_->say(transform("map", child, stamp, x, yaw));
+    geometry_msgs::TransformStamped known;
+    ASSERT_EQ(monitor_->lookUpTransform("map", child, stamp, 10.0, known), "");
+  }
+
+  bool isAt(std::size_t index, const Vector3& center) {
+    return eventually([&] {
+      const SnapshotPtr snapshot = monitor_->currentScene();
+      return snapshot->scene.size() > index &&
+             boxOf(*snapshot, index).center.isApprox(center, 1e-12);
+    });
+  }
+
+  bool becomes(bool complete) {
+    return eventually([&] { return completenessOf(*monitor_).complete == complete; });
+  }
+
+  std::unique_ptr<SceneMonitor> monitor_;
+  std::unique_ptr<ArrayTalker> talker_;
+  std::unique_ptr<Talker<tf2_msgs::TFMessage>> tf_;
+};
+
+Marker at(Marker marker, const ros::Time& stamp) {
+  marker.header.stamp = stamp;
+  return marker;
+}
+
+TEST_F(SceneMonitorTf, PlacesBoxesOfOtherFrames) {
+  start(listenTo({"tf_other"}));
+  move("turned", ros::Time(10), 5.0, kQuarterTurn);
+  Marker box = at(cube("/turned", 1, 1.0, 0.0, 2.0), ros::Time(10));
+  box.scale.x = 4.0;
+  say(box);
+  ASSERT_TRUE(isAt(0, Vector3(5.0, 1.0, 2.0)));
+  const SnapshotPtr snapshot = monitor_->scene();
+  EXPECT_TRUE(snapshot->completeness(ros::Time::now()).complete);
+  const OrientedBox& placed = boxOf(*snapshot, 0);
+  EXPECT_TRUE((placed.orientation * Vector3::UnitX()).isApprox(Vector3::UnitY(), 1e-12));
+  EXPECT_EQ(placed.half_extents, Vector3(2.0, 0.5, 0.5));
+  EXPECT_EQ(monitor_->statistics().avoided_transforms, 0U);
+}
+
+TEST_F(SceneMonitorTf, WaitsForALateTransformAndSaysSo) {
+  start(listenTo({"tf_late"}));
+  say(at(cube("late", 1, 1.0), ros::Time(10)));
+  talker_->say(array({at(cube("late", 2, 2.0), ros::Time(10)), cube("map", 3, 3.0)}));
+  ASSERT_TRUE(hasBoxes(*monitor_, 1));
+  const SnapshotPtr before = monitor_->currentScene();
+  EXPECT_EQ(before->names[0].id, 3) << "boxes that can be placed are";
+  EXPECT_EQ(before->topics[0].waiting, 2U);
+  const Completeness known = before->completeness(ros::Time::now());
+  EXPECT_FALSE(known.complete);
+  for (const char* word : {"2 boxes", "/tf_late", "'late'", "'map'", "10.000", "publish it"}) {
+    EXPECT_NE(known.reason.find(word), std::string::npos) << word << " in " << known.reason;
+  }
+  move("late", ros::Time(9), 100.0);
+  EXPECT_FALSE(completenessOf(*monitor_).complete) << "tf knows the frame, but not that time";
+  move("late", ros::Time(11), 100.0);
+  ASSERT_TRUE(hasBoxes(*monitor_, 3));
+  EXPECT_TRUE(isAt(0, Vector3(101.0, 0.0, 0.0)));
+  EXPECT_TRUE(isAt(1, Vector3(102.0, 0.0, 0.0)));
+  EXPECT_TRUE(completenessOf(*monitor_).complete);
+}
+
+TEST_F(SceneMonitorTf, GivesUpWhatNeverComesAndNamesIt) {
+  Parameters parameters = listenTo({"tf_missing"});
+  parameters.waiting_timeout = 0.2;
+  start(parameters);
+  say(cube("never", 1, 1.0));
+  ASSERT_TRUE(eventually([&] { return monitor_->statistics().given_up_boxes == 1; }));
+  const SnapshotPtr snapshot = monitor_->currentScene();
+  EXPECT_EQ(snapshot->topics[0].waiting, 0U);
+  EXPECT_EQ(snapshot->topics[0].rejected, 1U);
+  const Completeness known = snapshot->completeness(ros::Time::now());
+  EXPECT_FALSE(known.complete);
+  for (const char* word : {"/tf_missing", "box 1", "'never'", "given up"}) {
+    EXPECT_NE(known.reason.find(word), std::string::npos) << word << " in " << known.reason;
+  }
+  say(withAction(cube("never", 1, 1.0), Marker::DELETE));
+  EXPECT_TRUE(becomes(true));
+}
+
+TEST_F(SceneMonitorTf, PlacesAtTheStampOfTheMessage) {
+  start(listenTo({"tf_moving"}));
+  for (int second = 10; second <= 14; ++second) {
+    move("cart", ros::Time(second), second);
+  }
+  talker_->say(array({at(cube("cart", 1, 0.0), ros::Time(12)),
+                      at(cube("cart", 2, 0.0), ros::Time(10, 500000000)), cube("cart", 3, 0.0)}));
+  ASSERT_TRUE(hasBoxes(*monitor_, 3));
+  EXPECT_TRUE(isAt(0, Vector3(12.0, 0.0, 0.0)));
+  EXPECT_TRUE(isAt(1, Vector3(10.5, 0.0, 0.0)));
+  EXPECT_TRUE(isAt(2, Vector3(14.0, 0.0, 0.0))) << "no stamp: the latest";
+  move("cart", ros::Time(15), 15.0);
+  EXPECT_TRUE(isAt(2, Vector3(14.0, 0.0, 0.0))) << "and there it stays";
+}
+
+TEST_F(SceneMonitorTf, FollowsFramesThatBoxesAreLockedTo) {
+  start(listenTo({"tf_locked"}));
+  Marker locked = at(cube("lift", 1, 1.0), ros::Time(5));
+  locked.frame_locked = true;
+  say(locked);
+  ASSERT_TRUE(becomes(false));
+  ASSERT_TRUE(eventually([&] { return monitor_->currentScene()->topics[0].waiting == 1; }));
+  for (int second = 10; second < 15; ++second) {
+    move("lift", ros::Time(second), second, 0.0);
+    EXPECT_TRUE(isAt(0, Vector3(second + 1.0, 0.0, 0.0)));
+  }
+  EXPECT_TRUE(completenessOf(*monitor_).complete);
+  const SnapshotPtr before = monitor_->currentScene();
+  EXPECT_EQ(monitor_->currentScene(), before) << "nothing has moved";
+  say(withAction(locked, Marker::DELETE));
+  EXPECT_TRUE(hasBoxes(*monitor_, 0));
+}
+
+TEST_F(SceneMonitorTf, ShowsAnEarlierWordWhileEveryTransformIsLate) {
+  start(listenTo({"tf_behind"}));
+  for (int second = 10; second < 20; ++second) {
+    say(at(cube("behind", 1, 0.0), ros::Time(second)));
+    ASSERT_TRUE(eventually(
+        [&] { return monitor_->statistics().messages == static_cast<std::uint64_t>(second - 9); }));
+    move("behind", ros::Time(second - 1), second - 1.0);  // one message late
+    if (second > 10) {
+      EXPECT_TRUE(isAt(0, Vector3(second - 1.0, 0.0, 0.0))) << "its newest place";
+    }
+    EXPECT_FALSE(completenessOf(*monitor_).complete) << "there is news of it that waits";
+  }
+  move("behind", ros::Time(19), 19.0);
+  EXPECT_TRUE(becomes(true));
+  EXPECT_TRUE(isAt(0, Vector3(19.0, 0.0, 0.0)));
+}
+
+TEST_F(SceneMonitorTf, DropsWaitingBoxesThatAreDeleted) {
+  start(listenTo({"tf_deleted"}));
+  say(at(cube("slow", 1, 1.0), ros::Time(10)));
+  ASSERT_TRUE(eventually([&] { return monitor_->currentScene()->topics[0].waiting == 1; }));
+  say(withAction(cube("", 1, 0.0), Marker::DELETE));
+  ASSERT_TRUE(becomes(true));
+  move("slow", ros::Time(10), 1.0);
+  say(at(cube("slow", 2, 2.0), ros::Time(10)));
+  ASSERT_TRUE(isAt(0, Vector3(3.0, 0.0, 0.0)));
+  EXPECT_EQ(monitor_->currentScene()->scene.size(), 1U);
+}
+
+TEST_F(SceneMonitorTf, LetsOnlySoManyWait) {
+  Parameters parameters = listenTo({"tf_many"});
+  parameters.max_waiting_boxes = 3;
+  start(parameters);
+  talker_->say(array({cube("far", 1, 0.0), cube("far", 2, 0.0), cube("far", 3, 0.0),
+                      cube("far", 4, 0.0), cube("map", 5, 0.0)}));
+  ASSERT_TRUE(hasBoxes(*monitor_, 1));
+  const TopicState state = monitor_->currentScene()->topics[0];
+  EXPECT_EQ(state.waiting, 3U);
+  EXPECT_EQ(state.rejected, 1U);
+  EXPECT_NE(state.problem.find("max_waiting_boxes"), std::string::npos) << state.problem;
+  EXPECT_EQ(monitor_->statistics().overflowed_boxes, 1U);
+  talker_->say(array({withAction(cube("", 0, 0.0), Marker::DELETEALL), cube("far", 6, 0.0)}));
+  ASSERT_TRUE(hasBoxes(*monitor_, 0));
+  EXPECT_EQ(monitor_->currentScene()->topics[0].waiting, 1U) << "the deleted ones make room";
+  EXPECT_EQ(monitor_->currentScene()->topics[0].rejected, 0U);
+}
+
+TEST_F(SceneMonitorTf, LooksUpTransformsThatComeInTime) {
+  start(listenTo({"tf_lookup"}));
+  geometry_msgs::TransformStamped found;
+  EXPECT_EQ(monitor_->lookUpTransform("map", "/map", ros::Time(3), 0.0, found), "");
+  EXPECT_EQ(found.transform.rotation.w, 1.0);
+  EXPECT_EQ(monitor_->lookUpTransform("nobody", "nobody", ros::Time(), 0.0, found), "");
+
+  const auto start_time = std::chrono::steady_clock::now();
+  const std::string problem = monitor_->lookUpTransform("map", "absent", ros::Time(7), 0.2, found);
+  const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - start_time;
+  EXPECT_GE(waited.count(), 0.2);
+  for (const char* word : {"'absent'", "'map'", "7.000", "0.2 s"}) {
+    EXPECT_NE(problem.find(word), std::string::npos) << word << " in " << problem;
+  }
+  EXPECT_NE(monitor_->lookUpTransform("map", "", ros::Time(), 10.0, found), "");
+  EXPECT_NE(monitor_->lookUpTransform("map", "//a", ros::Time(), 10.0, found), "");
+
+  std::thread late([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    tf_->say(transform("map", "coming", ros::Time(7), 4.0));
+  });
+  EXPECT_EQ(monitor_->lookUpTransform("/map", "coming", ros::Time(7), 10.0, found), "");
+  late.join();
+  EXPECT_EQ(found.transform.translation.x, 4.0);
+}
+
+}  // namespace
+}  // namespace box_query
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "test_scene_monitor_tf");
+  const ros::NodeHandle keeps_ros_alive;
+  return RUN_ALL_TESTS();
+}
