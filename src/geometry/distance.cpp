@@ -21,7 +21,7 @@ SegmentDistance distanceOf(const Segment& segment, const AnyBox& box) {
 template <typename AnyBox>
 bool isClearOf(const Segment& segment, const AnyBox& box, double radius) {
   const exact::Nearest nearest = exact::nearest(exact::segmentAtBox(segment, box));
-  return compare(nearest.squared, {exact::Dyadic(radius) * radius, 1.0}) > 0;
+  return compare(nearest.squared, exact::Ratio{exact::Dyadic(radius) * radius, 1.0}) > 0;
 }
 
 template <typename AnyBox>

@@ -125,16 +125,48 @@ int signWithRoots(const Dyadic& a, const Dyadic& b, const Dyadic& c) {
 }  // namespace
 
 SegmentAtBox segmentAtBox(const Segment& segment, const AlignedBox& box) {
-  return {slabs(component(segment), box), 1.0};
+  SegmentAtBox s;
+  for (int i = 0; i < 3; ++i) {
+    const auto axis = static_cast<std::size_t>(i);
+    const Dyadic start = segment.start[i];
+    s.slabs.below[axis] = box.min[i] - start;
+    s.slabs.above[axis] = box.max[i] - start;
+    s.slabs.direction[axis] = segment.end[i] - start;
+  }
+  s.stretch_squared = 1.0;
+  return s;
 }
 
 SegmentAtBox segmentAtBox(const Segment& segment, const OrientedBox& box) {
-  Dyadic norm_squared;
-  for (int i = 0; i < 4; ++i) {
-    const Dyadic q = box.orientation.coeffs()[i];
-    norm_squared += q * q;
+  const Dyadic w = box.orientation.w();
+  const Dyadic x = box.orientation.x();
+  const Dyadic y = box.orientation.y();
+  const Dyadic z = box.orientation.z();
+  const Dyadic ww = w * w, xx = x * x, yy = y * y, zz = z * z;
+  const Dyadic xy = (x * y).scaled(1), xz = (x * z).scaled(1), yz = (y * z).scaled(1);
+  const Dyadic wx = (w * x).scaled(1), wy = (w * y).scaled(1), wz = (w * z).scaled(1);
+  const Dyadic n = ww + xx + yy + zz;
+  const Dyadic axes[3][3] = {{ww + xx - yy - zz, xy + wz, xz - wy},
+                             {xy - wz, ww - xx + yy - zz, yz + wx},
+                             {xz + wy, yz - wx, ww - xx - yy + zz}};
+  Dyadic offset[3];
+  Dyadic direction[3];
+  for (int j = 0; j < 3; ++j) {
+    const Dyadic start = segment.start[j];
+    offset[j] = start - box.center[j];
+    direction[j] = segment.end[j] - start;
   }
-  return {slabs(component(segment), box), norm_squared * norm_squared};
+  SegmentAtBox s;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Dyadic* axis = axes[i];
+    const Dyadic position = axis[0] * offset[0] + axis[1] * offset[1] + axis[2] * offset[2];
+    const Dyadic extent = n * box.half_extents[static_cast<int>(i)];
+    s.slabs.below[i] = -extent - position;
+    s.slabs.above[i] = extent - position;
+    s.slabs.direction[i] = axis[0] * direction[0] + axis[1] * direction[1] + axis[2] * direction[2];
+  }
+  s.stretch_squared = n * n;
+  return s;
 }
 
 SegmentAtBox segmentAtBox(const Segment& segment, const Box& box) {

@@ -17,7 +17,7 @@
 
 namespace box_query::exact {
 
-/// A segment in the frame of a box.
+/// A segment in the frame of a box, all of it stretched by |q|^2.
 struct SegmentAtBox {
   Slabs slabs;
   /// Squared distances in that frame are this many times those in the world.
