@@ -113,8 +113,12 @@ bool isClear(const ExactComponent& segment, const ExactBox& box, double radius) 
 }
 
 std::optional<Root> firstWithin(const ExactComponent& segment, const ExactBox& box, double radius) {
+  return firstWithin(segment, box, radius, nearest(segment, box));
+}
+
+std::optional<Root> firstWithin(const ExactComponent& segment, const ExactBox& box, double radius,
+                                const Nearest& best) {
   const Fraction limit{square(radius), 1.0};
-  const Nearest best = nearest(segment, box);
   if (compare(best.squared, limit) > 0) {
     return std::nullopt;
   }

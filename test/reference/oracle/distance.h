@@ -25,5 +25,8 @@ bool isClear(const ExactComponent& segment, const ExactBox& box, double radius);
 
 /// Smallest t in [0, 1] whose point is within the radius; nothing if the segment is clear.
 std::optional<Root> firstWithin(const ExactComponent& segment, const ExactBox& box, double radius);
+/// The same where nearest(segment, box) is known already.
+std::optional<Root> firstWithin(const ExactComponent& segment, const ExactBox& box, double radius,
+                                const Nearest& best);
 
 }  // namespace box_query::oracle

@@ -150,4 +150,13 @@ int compare(const Root& p, const Root& q) {
   return x.sign() >= 0 ? signOfDifference(x, u, v) : -signOfDifference(-x, v, u);
 }
 
+double approximate(const Root& root) {
+  if (root.discriminant.sign() == 0) {
+    return approximateRatio(-root.b, root.a);
+  }
+  // In units of a, so that nothing overflows that need not.
+  return approximateRatio(-root.b, root.a) -
+         std::sqrt(approximateRatio(root.discriminant, square(root.a)));
+}
+
 }  // namespace box_query::oracle

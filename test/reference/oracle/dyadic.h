@@ -79,5 +79,6 @@ struct Root {
 
 /// Sign of p - q.
 int compare(const Root& p, const Root& q);
+double approximate(const Root& root);
 
 }  // namespace box_query::oracle

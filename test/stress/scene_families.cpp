@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "stress/scene_families.h"
+
+#include "stress/families.h"
+#include "stress/random.h"
+
+#include <utility>
+
+namespace box_query::stress {
+namespace {
+
+/// Mostly a shelf's worth of boxes, at times enough for any index to have some depth.
+int boxCount(Random& random) {
+  if (random.chance(0.02)) {
+    return random.between(100, 300);
+  }
+  return random.chance(0.3) ? random.between(1, 9) : random.between(10, 40);
+}
+
+Target targetOf(const Box& box) {
+  return std::visit([](const auto& b) { return Target(b); }, box);
+}
+
+/// Components that graze boxes of the scene or pass through them.
+void aimAtBoxes(Random& random, SceneSample& scene, int ulps) {
+  const int count = scene.boxes.size() > 50 ? 2 : 6;
+  for (int i = 0; i < count; ++i) {
+    const Box& box =
+        scene.boxes[static_cast<std::size_t>(random.below(static_cast<int>(scene.boxes.size())))];
+    const Contact contact = random.chance(0.5) ? through(random) : anyGraze(random);
+    scene.components.push_back(aim(random, targetOf(box), contact, 10.0, ulps));
+  }
+}
+
+SceneSample uniform(Random& random) {
+  SceneSample scene;
+  for (int i = boxCount(random); i > 0; --i) {
+    const Vector3 center = random.uniformVector(-5.0, 5.0);
+    const Vector3 size = random.uniformVector(0.1, 1.5);
+    const bool oriented = random.chance(0.7);
+    scene.boxes.push_back(makeTarget(oriented, center, random.rotation(), size).box());
+  }
+  aimAtBoxes(random, scene, 0);
+  return scene;
+}
+
+/// Boards and uprights on decimal coordinates that share their faces' planes; components in them.
+SceneSample shelves(Random& random) {
+  SceneSample scene;
+  const int columns = random.between(1, 4);
+  const int rows = random.between(1, 4);
+  const bool oriented = random.chance(0.5);
+  for (int column = 0; column < columns; ++column) {
+    for (int row = 0; row < rows; ++row) {
+      const Vector3 center{0.9 * column, 0.0, 0.4 * row};
+      scene.boxes.push_back(makeTarget(oriented && random.chance(0.7), center,
+                                       Quaternion(1.0, 0.0, 0.0, 0.0), Vector3(0.45, 0.3, 0.02))
+                                .box());
+      const Vector3 upright{0.9 * column - 0.45, 0.0, 0.4 * row + 0.2};
+      scene.boxes.push_back(makeTarget(oriented && random.chance(0.7), upright,
+                                       Quaternion(1.0, 0.0, 0.0, 1.0), Vector3(0.3, 0.02, 0.2))
+                                .box());
+    }
+  }
+  for (int i = 0; i < 6; ++i) {
+    const auto pick = static_cast<std::size_t>(random.below(static_cast<int>(scene.boxes.size())));
+    const Target target = targetOf(scene.boxes[pick]);
+    Sample sample{target.box(), Vector3(), Vector3(), Vector3()};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double side = random.sign();
+      const Vector3 face = target.at(Vector3(side, side, side));
+      sample.origin[axis] = random.chance(0.7) ? face[axis] : random.uniform(-2.0, 4.0);
+      sample.direction[axis] = random.chance(0.6) ? 0.0 : random.sign();
+    }
+    sample.origin = onRay(sample.origin, random.chance(0.7) ? -5.0 : 0.0, sample.direction);
+    sample.end = onRay(sample.origin, random.uniform(0.0, 12.0), sample.direction);
+    scene.components.push_back(sample);
+  }
+  return scene;
+}
+
+/// Everything on a small lattice: boxes touch each other, components touch boxes, distances tie.
+SceneSample lattice(Random& random) {
+  SceneSample scene;
+  for (int i = boxCount(random); i > 0; --i) {
+    const Vector3 center = random.halves(3);
+    const Vector3 size = random.halves(1).cwiseAbs();
+    Quaternion rotation(1.0, 0.0, 0.0, 0.0);
+    if (random.chance(0.5)) {
+      rotation = Quaternion(1.0 + random.below(2), 0.0, 0.0, random.half(1));
+    }
+    scene.boxes.push_back(makeTarget(random.chance(0.5), center, rotation, size).box());
+  }
+  for (int i = 0; i < 6; ++i) {
+    scene.components.push_back(
+        Sample{scene.boxes[0], random.halves(5), random.halves(1), random.halves(5)});
+  }
+  return scene;
+}
+
+/// The same solid in other numbers.
+OrientedBox rewritten(Random& random, const OrientedBox& box) {
+  OrientedBox result = box;
+  const Quaternion& q = box.orientation;
+  switch (random.below(4)) {
+    case 0:
+      result.orientation.coeffs() = -q.coeffs();
+      break;
+    case 1:
+      result.orientation.coeffs() *= std::ldexp(1.0, random.between(-20, 20));
+      break;
+    case 2:  // q times i
+      result.orientation = Quaternion(-q.x(), q.w(), q.z(), -q.y());
+      break;
+    default:
+      break;
+  }
+  return result;
+}
+
+/// Few solids, many times over.
+SceneSample duplicates(Random& random) {
+  SceneSample scene;
+  std::vector<OrientedBox> solids;
+  for (int i = random.between(1, 4); i > 0; --i) {
+    const Vector3 center = random.uniformVector(-2.0, 2.0);
+    const Quaternion rotation = random.rotation();
+    solids.push_back({center, rotation, random.uniformVector(0.1, 1.5)});
+  }
+  for (int i = boxCount(random); i > 0; --i) {
+    const auto pick = static_cast<std::size_t>(random.below(static_cast<int>(solids.size())));
+    scene.boxes.emplace_back(rewritten(random, solids[pick]));
+  }
+  aimAtBoxes(random, scene, 1);
+  return scene;
+}
+
+/// Copies of one box, each number up to an ulp off: entries and distances that nearly tie.
+SceneSample nearTies(Random& random) {
+  SceneSample scene;
+  const Vector3 center = random.uniformVector(-5.0, 5.0);
+  const Quaternion rotation = random.rotation();
+  const Vector3 size = random.uniformVector(0.1, 1.5);
+  const bool oriented = random.chance(0.7);
+  for (int i = boxCount(random); i > 0; --i) {
+    Box box = makeTarget(oriented, random.nudged(center, 1), rotation, size).box();
+    if (auto* turned = std::get_if<OrientedBox>(&box)) {
+      turned->half_extents = random.nudged(size, 1);
+      turned->orientation.x() = random.nudged(rotation.x(), 1);
+    }
+    scene.boxes.push_back(box);
+  }
+  aimAtBoxes(random, scene, 1);
+  return scene;
+}
+
+/// Boxes of all sizes around one place, far from the origin of the map.
+SceneSample farNest(Random& random) {
+  SceneSample scene;
+  Vector3 place;
+  for (double& coordinate : place) {
+    coordinate = random.signedMagnitude(10, 25);
+  }
+  for (int i = boxCount(random); i > 0; --i) {
+    const Vector3 center = random.chance(0.5) ? place : random.nudged(place, 4);
+    Vector3 size;
+    for (double& extent : size) {
+      extent = random.chance(0.1) ? 0.0 : random.magnitude(-6, 3);
+    }
+    const bool oriented = random.chance(0.7);
+    scene.boxes.push_back(makeTarget(oriented, center, random.rotation(), size).box());
+  }
+  aimAtBoxes(random, scene, 2);
+  return scene;
+}
+
+/// Boxes of the pairs' families, with their components.
+SceneSample hostilePairs(Random& random) {
+  SceneSample scene;
+  const auto families = static_cast<int>(familyNames().size());
+  const int family = random.below(families);
+  const int count = random.between(1, 30);
+  for (int i = 0; i < count; ++i) {
+    const int own = random.chance(0.8) ? family : random.below(families);
+    const bool oriented = random.chance(0.5);
+    const std::uint64_t seed = random.bits();
+    const Sample sample = makeSample(static_cast<std::size_t>(own), oriented, seed, 0);
+    scene.boxes.push_back(sample.box);
+    if (i < 6) {
+      scene.components.push_back(sample);
+    }
+  }
+  return scene;
+}
+
+struct SceneFamily {
+  const char* name;
+  SceneSample (*make)(Random& random);
+};
+
+const SceneFamily kFamilies[] = {
+    {"scene_uniform", uniform},       {"scene_shelves", shelves},    {"scene_lattice", lattice},
+    {"scene_duplicates", duplicates}, {"scene_near_ties", nearTies}, {"scene_far_nest", farNest},
+    {"scene_hostile", hostilePairs},
+};
+
+}  // namespace
+
+const std::vector<std::string>& sceneFamilyNames() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> result;
+    for (const SceneFamily& family : kFamilies) {
+      result.emplace_back(family.name);
+    }
+    return result;
+  }();
+  return names;
+}
+
+SceneSample makeScene(std::size_t family, std::uint64_t seed, std::uint64_t index) {
+  Random random(seed, 2000 + family, index);
+  return kFamilies[family].make(random);
+}
+
+}  // namespace box_query::stress

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Scenes of many boxes in which boxes tie, or nearly tie, and components that meet them.
+#pragma once
+
+#include "stress/target.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace box_query::stress {
+
+struct SceneSample {
+  std::vector<Box> boxes;
+  /// Components; their own boxes are among those of the scene.
+  std::vector<Sample> components;
+};
+
+const std::vector<std::string>& sceneFamilyNames();
+
+SceneSample makeScene(std::size_t family, std::uint64_t seed, std::uint64_t index);
+
+}  // namespace box_query::stress
