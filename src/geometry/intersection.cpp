@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exact/clip.h"
+#include "geometry/solve.h"
 
 #include <box_query/intersection.h>
 
@@ -8,37 +8,25 @@ namespace {
 
 template <typename T, typename BoxType>
 bool test(const T& linear, const BoxType& box) {
-  return exact::clip(exact::component(linear), box).num_points > 0;
+  return meets(linear, doubleComponent(linear), box, prepared(box));
 }
 
 template <typename T, typename BoxType>
 Intersection find(const T& linear, const BoxType& box) {
-  const exact::Component component = exact::component(linear);
-  const exact::Clip clip = exact::clip(component, box);
-  Intersection result;
-  result.num_points = clip.num_points;
-  result.started_inside = clip.started_inside;
-  if (clip.num_points > 0) {
-    result.t_enter = exact::rounded(clip.enter);
-    result.t_exit = exact::rounded(clip.exit);
-    result.entered = clip.entered;
-    result.left = clip.left;
-    result.enter_point = exact::roundedPoint(component, clip.enter);
-    result.exit_point = exact::roundedPoint(component, clip.exit);
-  }
-  return result;
+  const DoubleComponent component = doubleComponent(linear);
+  Solution solution = solve(linear, component, box, prepared(box));
+  return intersectionOf(linear, component, box, solution);
 }
 
 template <typename T, typename BoxType>
 IntersectionRanges ranges(const T& linear, const BoxType& box) {
-  const exact::Component component = exact::component(linear);
-  const exact::Clip clip = exact::clip(component, box);
-  if (clip.num_points == 0) {
+  Solution solution = solve(linear, doubleComponent(linear), box, prepared(box));
+  if (solution.num_points == 0) {
     return {};
   }
-  const exact::Dyadic squared_length = exact::squaredNorm(component.direction);
-  return {exact::roundedRange(clip.enter, squared_length),
-          exact::roundedRange(clip.exit, squared_length)};
+  const exact::DoubleDouble length = directionLength(linear);
+  return {roundedRange(linear, box, solution, End::kEnter, length),
+          roundedRange(linear, box, solution, End::kExit, length)};
 }
 
 }  // namespace

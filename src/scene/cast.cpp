@@ -33,7 +33,7 @@ Vector3 outwardNormal(FaceSet faces, const Box& box) {
 
 Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
   const exact::Component component = exact::component(ray);
-  const exact::Dyadic squared_length = exact::squaredNorm(component.direction);
+  const exact::Dyadic squared_length = exact::dot(component.direction, component.direction);
   Hit hit;
   exact::Clip closest;
   forEachBox(size(), mask, [&](std::size_t i) {
@@ -61,7 +61,7 @@ Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noe
 
 bool Scene::castAny(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
   const exact::Component component = exact::component(ray);
-  const exact::Dyadic squared_length = exact::squaredNorm(component.direction);
+  const exact::Dyadic squared_length = exact::dot(component.direction, component.direction);
   bool any = false;
   forEachBox(size(), mask, [&](std::size_t i) {
     const exact::Clip clip = exact::clip(component, impl_->boxes[i]);

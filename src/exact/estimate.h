@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Parameters and ranges in double-double, with the error that decides whether they can be rounded.
+#pragma once
+
+#include "exact/bounds.h"
+#include "exact/certified.h"
+
+#include <cmath>
+#include <limits>
+
+namespace box_query::exact {
+
+/// A real number within `error` of `value`.
+struct Estimate {
+  DoubleDouble value;
+  double error = 0.0;
+
+  static Estimate unknown() { return {{}, std::numeric_limits<double>::infinity()}; }
+};
+
+inline Estimate quotient(const Certified& num, const Certified& den) {
+  if (num.isExactZero()) {
+    return Estimate();
+  }
+  const DoubleDouble value = num.value() / den.value();
+  // Relative errors of operands add up; beyond 2^-30 this is not tight enough to be of any use.
+  const double relative =
+      num.error() / std::fabs(num.value().hi) + den.error() / std::fabs(den.value().hi);
+  if (!(relative < 0x1p-30)) {
+    return Estimate::unknown();
+  }
+  return {value, std::fabs(value.hi) * ((relative + bounds::kOperation) * bounds::kRelative)};
+}
+
+/// a * b for an exact factor or one that is off by kOperation relative.
+inline Estimate product(const Estimate& a, const DoubleDouble& b) {
+  const DoubleDouble value = a.value * b;
+  return {value, (a.error * std::fabs(b.hi) + std::fabs(value.hi) * (2.0 * bounds::kOperation)) *
+                     bounds::kRelative};
+}
+
+/// Ziv's test: rounds to the nearest double if every number within the error rounds to the same.
+inline bool round(const Estimate& x, double& rounded) {
+  const double above = x.value.hi + (x.value.lo + x.error);
+  const double below = x.value.hi + (x.value.lo - x.error);
+  rounded = above + 0.0;  // no negative zero
+  const double magnitude = std::fabs(above);
+  return above == below && ((magnitude > 0x1p-900 && magnitude < 0x1p900) || x.error == 0.0);
+}
+
+}  // namespace box_query::exact

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "exact/stage_counters.h"
+
+namespace box_query::exact {
+
+StageCounters& stageCounters() {
+  thread_local StageCounters counters;
+  return counters;
+}
+
+}  // namespace box_query::exact

@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/solve.h"
+
+#include "exact/stage_counters.h"
+
+#include <array>
+#include <variant>
+
+namespace box_query {
+namespace {
+
+using exact::BasicClip;
+using exact::Certified;
+using exact::DoubleDouble;
+
+/// The axes that bound the interval; kOwn where the component's own start or end does.
+struct Ends {
+  static constexpr int kOwn = -1;
+  int enter;
+  int exit;
+};
+
+/// Finds the one axis at which the component certainly enters, and the one where it leaves.
+///
+/// On a hit that the filter decided, a parameter t after near_hi_i and before far_lo_i has the
+/// exact point strictly between the planes of axis i. So where near_lo_i exceeds all other near_hi,
+/// and the start, nothing but axis i can bound the interval from below.
+template <typename T>
+bool identify(const SlabTimes& t, Ends& ends) {
+  int first = 0;
+  int last = 0;
+  for (int i = 1; i < 3; ++i) {
+    first = t.near_lo[i] > t.near_lo[first] ? i : first;
+    last = t.far_hi[i] < t.far_hi[last] ? i : last;
+  }
+  const double near = t.near_lo[first];
+  const double other_near = std::max(t.near_hi[(first + 1) % 3], t.near_hi[(first + 2) % 3]);
+  const double far = t.far_hi[last];
+  const double other_far = std::min(t.far_lo[(last + 1) % 3], t.far_lo[(last + 2) % 3]);
+
+  const bool from_start = kHasStart<T> && std::max(t.near_hi[first], other_near) < 0.0;
+  const bool to_end = kHasEnd<T> && std::min(t.far_lo[last], other_far) > 1.0;
+  ends = {from_start ? Ends::kOwn : first, to_end ? Ends::kOwn : last};
+  return (from_start || (near > other_near && (!kHasStart<T> || near > 0.0))) &&
+         (to_end || (far < other_far && (!kHasEnd<T> || far < 1.0)));
+}
+
+/// The direction of a component along axis i of the world, exactly.
+DoubleDouble exactDirection(const Segment& segment, int i) {
+  return exact::twoDiff(segment.end[i], segment.start[i]);
+}
+template <typename T>
+DoubleDouble exactDirection(const T& linear, int i) {
+  return {linear.direction[i], 0.0};
+}
+
+/// Within 22u^2 times the sum of the absolute values of the products: see bounds::kRow.
+DoubleDouble dot(const DoubleDouble* a, const DoubleDouble* b) {
+  const DoubleDouble p0 = exact::twoProd(a[0].hi, b[0].hi);
+  const DoubleDouble p1 = exact::twoProd(a[1].hi, b[1].hi);
+  const DoubleDouble p2 = exact::twoProd(a[2].hi, b[2].hi);
+  const double c0 = p0.lo + (a[0].hi * b[0].lo + a[0].lo * b[0].hi);
+  const double c1 = p1.lo + (a[1].hi * b[1].lo + a[1].lo * b[1].hi);
+  const double c2 = p2.lo + (a[2].hi * b[2].lo + a[2].lo * b[2].hi);
+  const DoubleDouble s = exact::twoSum(p0.hi, p1.hi);
+  const DoubleDouble r = exact::twoSum(s.hi, p2.hi);
+  return exact::fastTwoSum(r.hi, (s.lo + r.lo) + ((c0 + c1) + c2));
+}
+
+/// Parameters at the planes of one kind of box, in double-double.
+template <typename T, typename BoxType>
+class Planes;
+
+template <typename T>
+class Planes<T, AlignedBox> {
+ public:
+  Planes(const T& linear, const DoubleComponent& component, const AlignedBox& box, const Rows*)
+      : linear_(linear), component_(component), box_(box) {}
+
+  bool isPositive(int axis) const { return !component_.negative[axis]; }
+
+  exact::BasicParameter<Certified> at(int axis, bool max_plane) const {
+    const double plane = max_plane ? box_.max[axis] : box_.min[axis];
+    const Certified num(exact::twoDiff(plane, component_.origin[axis]), 0.0);
+    const Certified den(exactDirection(linear_, axis), 0.0);
+    return isPositive(axis) ? exact::BasicParameter<Certified>{num, den}
+                            : exact::BasicParameter<Certified>{-num, -den};
+  }
+
+ private:
+  const T& linear_;
+  const DoubleComponent& component_;
+  const AlignedBox& box_;
+};
+
+template <typename T>
+class Planes<T, OrientedBox> {
+ public:
+  Planes(const T& linear, const DoubleComponent& component, const OrientedBox& box,
+         const Rows* rows)
+      : box_(box), rows_(rows) {
+    if (rows_ == nullptr) {
+      own_rows_ = doubleDoubleRows(box.orientation);
+      rows_ = &own_rows_;
+    }
+    for (int i = 0; i < 3; ++i) {
+      offset_[i] = exact::twoDiff(component.origin[i], box.center[i]);
+      direction_[i] = exactDirection(linear, i);
+    }
+    const double n = rows_->n.hi;
+    offset_error_ = exact::bounds::kRow * n *
+                    (std::fabs(offset_[0].hi) + std::fabs(offset_[1].hi) +
+                     std::fabs(offset_[2].hi) + box.half_extents.sum());
+    direction_error_ =
+        exact::bounds::kRow * n *
+        (std::fabs(direction_[0].hi) + std::fabs(direction_[1].hi) + std::fabs(direction_[2].hi));
+  }
+
+  bool isPositive(int axis) { return row(axis).direction.hi > 0.0; }
+
+  exact::BasicParameter<Certified> at(int axis, bool max_plane) {
+    const Row& r = row(axis);
+    const DoubleDouble num = (max_plane ? r.extent : -r.extent) - r.position;
+    const bool positive = r.direction.hi > 0.0;
+    return {Certified(positive ? num : -num, offset_error_),
+            Certified(positive ? r.direction : -r.direction, direction_error_)};
+  }
+
+ private:
+  struct Row {
+    int axis = -1;
+    DoubleDouble position;
+    DoubleDouble direction;
+    DoubleDouble extent;
+  };
+
+  const Row& row(int axis) {
+    if (row_.axis != axis) {
+      row_.axis = axis;
+      row_.position = dot(rows_->axes[axis], offset_);
+      row_.direction = dot(rows_->axes[axis], direction_);
+      row_.extent = rows_->n * DoubleDouble{box_.half_extents[axis], 0.0};
+    }
+    return row_;
+  }
+
+  const OrientedBox& box_;
+  const Rows* rows_;
+  Rows own_rows_;
+  DoubleDouble offset_[3];
+  DoubleDouble direction_[3];
+  double offset_error_;
+  double direction_error_;
+  Row row_;
+};
+
+template <typename T, typename BoxType>
+Solution solveAtAxes(const T& linear, const DoubleComponent& component, const BoxType& box,
+                     const Rows* rows, const Ends& ends) {
+  Solution solution;
+  solution.num_points = 2;
+  solution.started_inside = kHasStart<T> && ends.enter == Ends::kOwn;
+  Planes<T, BoxType> planes(linear, component, box, rows);
+  if (ends.enter == Ends::kOwn) {
+    solution.enter = {0.0, 1.0};
+  } else {
+    const bool positive = planes.isPositive(ends.enter);
+    solution.entered.insert(ends.enter, !positive);
+    solution.enter = planes.at(ends.enter, !positive);
+  }
+  if (ends.exit == Ends::kOwn) {
+    solution.exit = {1.0, 1.0};
+  } else {
+    const bool positive = planes.isPositive(ends.exit);
+    solution.left.insert(ends.exit, positive);
+    solution.exit = planes.at(ends.exit, positive);
+  }
+  return solution;
+}
+
+template <typename Number>
+Solution solutionOf(const BasicClip<Number>& clip) {
+  Solution solution;
+  solution.num_points = clip.num_points;
+  solution.started_inside = clip.started_inside;
+  if (clip.num_points > 0) {
+    solution.entered = clip.entered;
+    solution.left = clip.left;
+  }
+  return solution;
+}
+
+template <typename T, typename BoxType>
+bool certifiedClip(const T& linear, const BoxType& box, BasicClip<Certified>& clip) {
+  ++exact::stageCounters().certified_decisions;
+  const auto component = exact::basicComponent<Certified>(linear);
+  return exact::clip(exact::basicSlabs(component, box, true), kHasStart<T>, kHasEnd<T>, clip);
+}
+
+template <typename T, typename BoxType>
+exact::Clip exactClip(const T& linear, const BoxType& box) {
+  return exact::clip(exact::component(linear), box);
+}
+
+/// Replaces parameters from double-double rows by ones that may be known without error.
+template <typename T>
+void tighten(const T& linear, const Box& box, Solution& solution) {
+  if (solution.enter.num.error() == 0.0) {
+    return;
+  }
+  BasicClip<Certified> clip;
+  if (std::visit([&](const auto& b) { return certifiedClip(linear, b, clip); }, box)) {
+    solution.enter = clip.enter;
+    solution.exit = clip.exit;
+  }
+}
+
+/// The exact solution of a box whose solution so far could not be rounded.
+template <typename T, typename BoxType>
+const exact::Clip& exactly(const T& linear, const BoxType& box, Solution& solution) {
+  if (!solution.exactly) {
+    ++exact::stageCounters().exact_roundings;
+    solution.exactly = exactClip(linear, box);
+  }
+  return *solution.exactly;
+}
+
+exact::Estimate estimate(const Solution& solution, End end) {
+  const auto& t = end == End::kEnter ? solution.enter : solution.exit;
+  return exact::quotient(t.num, t.den);
+}
+
+const exact::Parameter& exactEnd(const exact::Clip& clip, End end) {
+  return end == End::kEnter ? clip.enter : clip.exit;
+}
+
+template <typename T>
+exact::Dyadic squaredLength(const T& linear) {
+  const auto direction = exact::component(linear).direction;
+  return exact::dot(direction, direction);
+}
+
+template <typename T>
+const Vector3& start(const T& linear) {
+  if constexpr (kHasEnd<T>) {
+    return linear.start;
+  } else {
+    return linear.origin;
+  }
+}
+
+/// A point that rounding has left near the box, clamped to it, and exactly onto the given faces.
+Vector3 movedInto(const AlignedBox& box, const Vector3& point, FaceSet faces) {
+  Vector3 inside;
+  for (int i = 0; i < 3; ++i) {
+    inside[i] = std::min(std::max(point[i], box.min[i]), box.max[i]);
+    inside[i] = faces.contains(i, false) ? box.min[i] : inside[i];
+    inside[i] = faces.contains(i, true) ? box.max[i] : inside[i];
+  }
+  return inside;
+}
+
+/// The same in the frame of the box. Only the correction, which is tiny, is turned back into the
+/// world, so that no more than the point's own rounding is lost.
+Vector3 movedInto(const OrientedBox& box, const Vector3& point, FaceSet faces) {
+  const Axes axes = boxAxes(box.orientation);
+  const Vector3 v = point - box.center;
+  Vector3 inside = point;
+  for (int i = 0; i < 3; ++i) {
+    const double* a = axes.of[i];
+    const double extent = box.half_extents[i];
+    const double y = (a[0] * v[0] + a[1] * v[1]) + a[2] * v[2];
+    double target = std::min(std::max(y, -extent), extent);
+    target = faces.contains(i, false) ? -extent : target;
+    target = faces.contains(i, true) ? extent : target;
+    const double correction = target - y;
+    for (int j = 0; j < 3; ++j) {
+      inside[j] += correction * a[j];
+    }
+  }
+  return inside;
+}
+
+}  // namespace
+
+template <typename T, typename BoxType>
+bool meetsSlowly(const T& linear, const DoubleComponent& component, const BoxType& box) {
+  if (component.compact && isCompact(box)) {
+    BasicClip<Certified> clip;
+    if (certifiedClip(linear, box, clip)) {
+      return clip.num_points > 0;
+    }
+  }
+  ++exact::stageCounters().exact_decisions;
+  return exactClip(linear, box).num_points > 0;
+}
+
+template <typename T, typename BoxType, typename SlabsType>
+Solution solve(const T& linear, const DoubleComponent& component, const BoxType& box,
+               const Prepared<SlabsType>& prepared, const Rows* rows) {
+  if (component.moderate && prepared.moderate) {
+    const SlabTimes times = slabTimes(component, prepared.slabs);
+    const Enclosure e = enclose<T>(times);
+    if (e.isMiss()) {
+      return {};
+    }
+    if (component.compact && prepared.compact) {
+      Ends ends;
+      if (e.enter_hi < e.exit_lo && identify<T>(times, ends)) {
+        return solveAtAxes(linear, component, box, rows, ends);
+      }
+      BasicClip<Certified> clip;
+      if (certifiedClip(linear, box, clip)) {
+        Solution solution = solutionOf(clip);
+        solution.enter = clip.enter;
+        solution.exit = clip.exit;
+        return solution;
+      }
+    }
+  }
+  ++exact::stageCounters().exact_decisions;
+  const exact::Clip clip = exactClip(linear, box);
+  Solution solution = solutionOf(clip);
+  solution.exactly = clip;
+  return solution;
+}
+
+template <typename T>
+int compareEntries(const T& linear, const Box& box_a, Solution& a, const Box& box_b, Solution& b) {
+  if (!a.exactly && !b.exactly) {
+    for (const bool tightened : {false, true}) {
+      if (tightened) {
+        tighten(linear, box_a, a);
+        tighten(linear, box_b, b);
+      }
+      const int order = exact::compare(a.enter, b.enter);
+      if (order != exact::kUnknownSign) {
+        return order;
+      }
+    }
+  }
+  return exact::compare(exactly(linear, box_a, a).enter, exactly(linear, box_b, b).enter);
+}
+
+template <typename T>
+DoubleDouble directionLength(const T& linear) {
+  const DoubleDouble d[3] = {exactDirection(linear, 0), exactDirection(linear, 1),
+                             exactDirection(linear, 2)};
+  return sqrt(dot(d, d));
+}
+
+template <typename T, typename BoxType>
+double roundedParameter(const T& linear, const BoxType& box, Solution& solution, End end) {
+  double rounded = 0.0;
+  if (!solution.exactly && exact::round(estimate(solution, end), rounded)) {
+    return rounded;
+  }
+  return exact::rounded(exactEnd(exactly(linear, box, solution), end));
+}
+
+template <typename T, typename BoxType>
+double roundedRange(const T& linear, const BoxType& box, Solution& solution, End end,
+                    const DoubleDouble& length) {
+  double rounded = 0.0;
+  if (!solution.exactly && exact::round(exact::product(estimate(solution, end), length), rounded)) {
+    return rounded;
+  }
+  return exact::roundedRange(exactEnd(exactly(linear, box, solution), end), squaredLength(linear));
+}
+
+template <typename T, typename BoxType>
+bool isEnteredWithin(const T& linear, const BoxType& box, Solution& solution, double max_range,
+                     const DoubleDouble& length) {
+  if (std::isinf(max_range)) {
+    return true;
+  }
+  if (!solution.exactly) {
+    const exact::Estimate range = exact::product(estimate(solution, End::kEnter), length);
+    const Certified excess = Certified(range.value, range.error) - Certified(max_range);
+    if (excess.sign() != exact::kUnknownSign) {
+      return excess.sign() <= 0;
+    }
+  }
+  return exact::isWithin(exactly(linear, box, solution).enter, squaredLength(linear), max_range);
+}
+
+template <typename T, typename BoxType>
+Vector3 pointAt(const T& linear, const DoubleComponent& component, const BoxType& box,
+                Solution& solution, End end, double t) {
+  if constexpr (kHasStart<T>) {
+    if (t == 0.0 && solution.started_inside) {
+      return start(linear);
+    }
+  }
+  if constexpr (kHasEnd<T>) {
+    if (t == 1.0) {
+      return linear.end;
+    }
+  }
+  if (!component.moderate || !isModerate(box)) {
+    return exact::roundedPoint(exact::component(linear),
+                               exactEnd(exactly(linear, box, solution), end));
+  }
+  const Vector3 direction(component.direction[0], component.direction[1], component.direction[2]);
+  const Vector3 point = start(linear) + t * direction;
+  return movedInto(box, point, end == End::kEnter ? solution.entered : solution.left);
+}
+
+#define BOX_QUERY_INSTANTIATE(T, BoxType, SlabsType)                                               \
+  template bool meetsSlowly(const T&, const DoubleComponent&, const BoxType&);                     \
+  template Solution solve(const T&, const DoubleComponent&, const BoxType&,                        \
+                          const Prepared<SlabsType>&, const Rows*);                                \
+  template double roundedParameter(const T&, const BoxType&, Solution&, End);                      \
+  template double roundedRange(const T&, const BoxType&, Solution&, End, const DoubleDouble&);     \
+  template bool isEnteredWithin(const T&, const BoxType&, Solution&, double, const DoubleDouble&); \
+  template Vector3 pointAt(const T&, const DoubleComponent&, const BoxType&, Solution&, End,       \
+                           double);
+#define BOX_QUERY_INSTANTIATE_COMPONENT(T)                                             \
+  BOX_QUERY_INSTANTIATE(T, AlignedBox, AlignedSlabs)                                   \
+  BOX_QUERY_INSTANTIATE(T, OrientedBox, OrientedSlabs)                                 \
+  template int compareEntries(const T&, const Box&, Solution&, const Box&, Solution&); \
+  template DoubleDouble directionLength(const T&);
+
+BOX_QUERY_INSTANTIATE_COMPONENT(Line)
+BOX_QUERY_INSTANTIATE_COMPONENT(Ray)
+BOX_QUERY_INSTANTIATE_COMPONENT(Segment)
+
+}  // namespace box_query

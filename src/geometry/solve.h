@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// One query against one box: decided in double, if not in double-double, if not exactly; then
+/// rounded, but only what is asked for.
+#pragma once
+
+#include "exact/clip.h"
+#include "exact/estimate.h"
+#include "geometry/prepared_box.h"
+#include "geometry/slabs.h"
+
+#include <box_query/geometry.h>
+#include <box_query/intersection.h>
+
+#include <optional>
+
+namespace box_query {
+
+/// Whether the component meets the box, where the filter could not tell.
+template <typename T, typename BoxType>
+bool meetsSlowly(const T& linear, const DoubleComponent& component, const BoxType& box);
+
+/// Whether the component meets the box.
+template <typename T, typename BoxType, typename SlabsType>
+bool meets(const T& linear, const DoubleComponent& component, const BoxType& box,
+           const Prepared<SlabsType>& prepared) {
+  if (component.moderate && prepared.moderate) {
+    const Enclosure e = enclose<T>(component, prepared.slabs);
+    if (e.isHit()) {
+      return true;
+    }
+    if (e.isMiss()) {
+      return false;
+    }
+    if (crossesThinSlab<T>(slabTimes(component, prepared.slabs))) {
+      return true;
+    }
+  }
+  return meetsSlowly(linear, component, box);
+}
+
+/// What of a component lies in a box: everything is decided, nothing is rounded.
+struct Solution {
+  int num_points = 0;
+  bool started_inside = false;
+  FaceSet entered;
+  FaceSet left;
+  /// Parameters of entry and exit; without meaning where `exactly` is set.
+  exact::BasicParameter<exact::Certified> enter;
+  exact::BasicParameter<exact::Certified> exit;
+  /// The exact stage's own solution, where it was needed.
+  std::optional<exact::Clip> exactly;
+};
+
+/// @param rows of an oriented box, where they are at hand
+template <typename T, typename BoxType, typename SlabsType>
+Solution solve(const T& linear, const DoubleComponent& component, const BoxType& box,
+               const Prepared<SlabsType>& prepared, const Rows* rows = nullptr);
+
+/// -1, 0 or 1 as the first box is entered before, with or after the second.
+template <typename T>
+int compareEntries(const T& linear, const Box& box_a, Solution& a, const Box& box_b, Solution& b);
+
+/// The length of a component's direction, the factor between parameters and metres, within
+/// bounds::kOperation relative.
+template <typename T>
+exact::DoubleDouble directionLength(const T& linear);
+
+/// Which end of the part of a component that lies in a box.
+enum class End { kEnter, kExit };
+
+/// The parameter and the distance in metres of an end of a solution that is a hit, correctly
+/// rounded.
+template <typename T, typename BoxType>
+double roundedParameter(const T& linear, const BoxType& box, Solution& solution, End end);
+template <typename T, typename BoxType>
+double roundedRange(const T& linear, const BoxType& box, Solution& solution, End end,
+                    const exact::DoubleDouble& length);
+
+/// Whether a hit is entered at a distance of at most `max_range` metres.
+template <typename T, typename BoxType>
+bool isEnteredWithin(const T& linear, const BoxType& box, Solution& solution, double max_range,
+                     const exact::DoubleDouble& length);
+
+/// The point at an end of a solution that is a hit; `t` is its rounded parameter.
+template <typename T, typename BoxType>
+Vector3 pointAt(const T& linear, const DoubleComponent& component, const BoxType& box,
+                Solution& solution, End end, double t);
+
+/// Everything about a solution, rounded.
+template <typename T, typename BoxType>
+Intersection intersectionOf(const T& linear, const DoubleComponent& component, const BoxType& box,
+                            Solution& solution) {
+  Intersection result;
+  result.num_points = solution.num_points;
+  result.started_inside = solution.started_inside;
+  if (solution.num_points > 0) {
+    result.t_enter = roundedParameter(linear, box, solution, End::kEnter);
+    result.t_exit = roundedParameter(linear, box, solution, End::kExit);
+    result.entered = solution.entered;
+    result.left = solution.left;
+    result.enter_point = pointAt(linear, component, box, solution, End::kEnter, result.t_enter);
+    result.exit_point = pointAt(linear, component, box, solution, End::kExit, result.t_exit);
+  }
+  return result;
+}
+
+}  // namespace box_query
