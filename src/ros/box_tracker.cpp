@@ -48,14 +48,15 @@ BoxTracker::BoxTracker(const Parameters& parameters, const tf2::BufferCore& tf)
   });
 }
 
-void BoxTracker::receive(std::size_t topic_index, DecodedMessage&& message, bool known_type,
+void BoxTracker::receive(std::size_t topic_index, const BoxSource* source, DecodedMessage&& message,
                          const ros::Time& now) {
   Topic& topic = topics_.at(topic_index);
   ++changes_;
   ++counts_.messages;
+  topic.heard_type = source ? source->type : "";
   counts_.ignored_markers += message.ignored;
   if (!message.problem.empty()) {
-    ++(known_type ? counts_.malformed_messages : counts_.unknown_type_messages);
+    ++(source ? counts_.malformed_messages : counts_.unknown_type_messages);
     topic.refusal = "The last message on topic " + topic.state.parameters.topic +
                     " was refused: " + message.problem + ".";
     return;
@@ -69,6 +70,16 @@ void BoxTracker::receive(std::size_t topic_index, DecodedMessage&& message, bool
   cached_place_.reset();
   for (BoxChange& change : message.changes) {
     apply(topic_index, std::move(change), now);
+  }
+}
+
+void BoxTracker::setConflict(std::size_t topic_index, const std::string& type) {
+  Topic& topic = topics_.at(topic_index);
+  const bool same = topic.heard_type.empty() || type == topic.heard_type;
+  const std::string conflict = same ? "" : type;
+  if (conflict != topic.conflict_type) {
+    topic.conflict_type = conflict;
+    ++changes_;
   }
 }
 
@@ -280,6 +291,10 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
 
   if (!topic.refusal.empty()) {
     state.problem = topic.refusal;
+  } else if (!topic.conflict_type.empty()) {
+    state.problem = "Topic " + state.parameters.topic + " has publishers of two types, " +
+                    topic.heard_type + " and " + topic.conflict_type +
+                    ": the latter cannot be heard; give each type a topic of its own.";
   } else if (state.rejected > 0) {
     state.problem = boxesOf(state.rejected, state.parameters.topic) + " cannot be used: " + bad +
                     ". Publish it again, correctly, or delete it.";

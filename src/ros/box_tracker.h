@@ -34,8 +34,13 @@ class BoxTracker {
   /// The topics' names are resolved ones.
   BoxTracker(const Parameters& parameters, const tf2::BufferCore& tf);
 
-  /// Applies a message that came at ROS time `now`, or refuses it whole.
-  void receive(std::size_t topic, DecodedMessage&& message, bool known_type, const ros::Time& now);
+  /// Applies a message that came at ROS time `now`, or refuses it whole. `source` is null where its
+  /// type is not understood.
+  void receive(std::size_t topic, const BoxSource* source, DecodedMessage&& message,
+               const ros::Time& now);
+  /// A publisher that cannot be heard beside the others, as it publishes `type`; empty: there is
+  /// none.
+  void setConflict(std::size_t topic, const std::string& type);
 
   /// Places the boxes whose transform has come; gives up those that waited too long.
   void settle(Clock::time_point now);
@@ -58,7 +63,9 @@ class BoxTracker {
  private:
   struct Topic {
     TopicState state;
-    std::string refusal;  ///< of its last message; empty if that was accepted
+    std::string refusal;        ///< of its last message; empty if that was accepted
+    std::string heard_type;     ///< of that message
+    std::string conflict_type;  ///< of a publisher that cannot be heard; empty if all can
   };
 
   void apply(std::size_t topic, BoxChange&& change, const ros::Time& now);

@@ -5,6 +5,7 @@
 #include "ros/any_box_message.h"
 #include "ros/bell.h"
 #include "ros/box_tracker.h"
+#include "ros/publishers.h"
 #include "ros/transforms.h"
 
 #include <box_query/ros/scene_monitor.h>
@@ -22,7 +23,6 @@
 #include <ros/callback_queue.h>
 #include <ros/console.h>
 #include <ros/init.h>
-#include <ros/master.h>
 #include <ros/spinner.h>
 #include <ros/subscribe_options.h>
 #include <ros/subscriber.h>
@@ -34,7 +34,7 @@ using Clock = Bell::Clock;
 
 /// At the latest after this the worker looks at the clocks and at locked frames by itself.
 constexpr std::chrono::milliseconds kTick(50);
-/// Between looks for publishers that have gone.
+/// Between looks at who publishes.
 constexpr std::chrono::seconds kPublisherCheck(1);
 /// [s] The system clock may be set back by this much; boxes then live that much longer.
 constexpr double kClockStep = 1.0;
@@ -57,14 +57,16 @@ Parameters resolved(const ros::NodeHandle& nh, Parameters parameters) {
 struct SceneMonitor::Impl {
   struct Topic {
     ros::Subscriber subscriber;
-    bool pinned = false;  ///< roscpp has tied it to the type of a publisher
+    // At the last look:
+    bool connected = false;  ///< to a publisher
+    bool missing = false;    ///< the master knew of more publishers than were connected
   };
 
   Impl(const ros::NodeHandle& node, const Parameters& given);
   void stop();
 
   void subscribe(std::size_t topic);
-  void subscribeAnew();
+  void checkPublishers();
   void receive(std::size_t topic, AnyBoxMessage& message);
   void noticeTime();
 
@@ -157,20 +159,28 @@ void SceneMonitor::Impl::subscribe(std::size_t topic) {
   options.callback_queue = &queue;
   options.transport_hints = ros::TransportHints().tcpNoDelay();
   topics[topic].subscriber = nh.subscribe(options);
-  topics[topic].pinned = false;
 }
 
-/// The first publisher pins a subscription of any type to its own type for good, and publishers of
-/// another are refused. Where the last publisher has gone, the next one may be of any type again.
-void SceneMonitor::Impl::subscribeAnew() {
-  for (std::size_t topic = 0; topic < topics.size() && !stopping; ++topic) {
-    Topic& of = topics[topic];
-    if (of.subscriber.getNumPublishers() > 0) {
-      of.pinned = true;
-    } else if (of.pinned && ros::master::check()) {  // registering waits for a master that is gone
-      of.subscriber.shutdown();
-      subscribe(topic);
+/// The first publisher pins a subscription of any type to its own type for good, and roscpp refuses
+/// publishers of another. Where none is connected, subscribing anew lets the next one be of any
+/// type again; where one is, the others cannot be heard, and the scene is incomplete.
+void SceneMonitor::Impl::checkPublishers() {
+  const auto known = askForPublishers();
+  for (std::size_t index = 0; known && index < topics.size() && !stopping; ++index) {
+    Topic& topic = topics[index];
+    const auto found = known->find(parameters.box_topics[index].topic);
+    const Publishers published = found == known->end() ? Publishers() : found->second;
+    const std::size_t connected = topic.subscriber.getNumPublishers();
+    const bool missing = published.nodes > connected;
+    if (connected == 0 && (topic.connected || missing)) {
+      topic.subscriber.shutdown();
+      subscribe(index);
     }
+    const bool conflict = connected > 0 && missing && topic.missing;  // not just on its way
+    topic.connected = connected > 0;
+    topic.missing = missing;
+    const std::lock_guard<std::mutex> lock(mutex);
+    tracker.setConflict(index, conflict ? published.type : "");
   }
 }
 
@@ -179,7 +189,7 @@ void SceneMonitor::Impl::receive(std::size_t topic, AnyBoxMessage& message) {
   {
     const std::lock_guard<std::mutex> lock(mutex);
     noticeTime();
-    tracker.receive(topic, std::move(message.decoded), message.source != nullptr, now);
+    tracker.receive(topic, message.source, std::move(message.decoded), now);
     tf_wanted = tracker.isWaiting();
   }
   bell.ring();
@@ -267,7 +277,7 @@ void SceneMonitor::Impl::work() {
     const std::uint64_t rings = bell.rings();
     tick();
     if (Clock::now() >= publisher_check) {
-      subscribeAnew();
+      checkPublishers();
       publisher_check = Clock::now() + kPublisherCheck;
     }
     bell.waitPast(rings, Clock::now() + kTick);

@@ -9,7 +9,9 @@
 #include <memory>
 #include <thread>
 
+#include <XmlRpcValue.h>
 #include <ros/init.h>
+#include <ros/master.h>
 #include <std_msgs/String.h>
 
 namespace box_query {
@@ -209,6 +211,34 @@ TEST(SceneMonitor, NamesATypeThatItDoesNotKnowAndHearsTheNextPublisher) {
   talker.say(array({cube("map", 1, 1.0)}));
   EXPECT_TRUE(holds(monitor, "1:1 "));
   EXPECT_TRUE(completenessOf(monitor).complete);
+}
+
+TEST(SceneMonitor, IsIncompleteWhileAPublisherOfAnotherTypeCannotBeHeard) {
+  SceneMonitor monitor(ros::NodeHandle(), listenTo({"two_types"}));
+  ArrayTalker talker("two_types");
+  ASSERT_TRUE(talker.isHeard());
+  talker.say(array({cube("map", 1, 1.0)}));
+  ASSERT_TRUE(becomes(monitor, true));
+  {
+    // This process may not advertise a second type itself.
+    XmlRpc::XmlRpcValue request;
+    XmlRpc::XmlRpcValue response;
+    XmlRpc::XmlRpcValue payload;
+    request[0] = "/somebody_else";
+    request[1] = "/two_types";
+    request[2] = "std_msgs/String";
+    request[3] = "http://127.0.0.1:1/";
+    ASSERT_TRUE(ros::master::execute("registerPublisher", request, response, payload, false));
+    ASSERT_TRUE(becomes(monitor, false));
+    const std::string reason = completenessOf(monitor).reason;
+    EXPECT_NE(reason.find("std_msgs/String"), std::string::npos) << reason;
+    XmlRpc::XmlRpcValue unregister;
+    unregister[0] = request[0];
+    unregister[1] = request[1];
+    unregister[2] = request[3];
+    ASSERT_TRUE(ros::master::execute("unregisterPublisher", unregister, response, payload, false));
+  }
+  EXPECT_TRUE(becomes(monitor, true));
 }
 
 TEST(SceneMonitor, RefusesMalformedMessagesWhole) {
