@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/aligned_form.h"
 #include "geometry/solve.h"
 
 #include <box_query/intersection.h>
@@ -6,16 +7,40 @@
 namespace box_query {
 namespace {
 
-template <typename T, typename BoxType>
-bool test(const T& linear, const BoxType& box) {
+template <typename T>
+bool test(const T& linear, const AlignedBox& box) {
+  return meets(linear, doubleComponent(linear), box, prepared(box));
+}
+
+template <typename T>
+bool test(const T& linear, const OrientedBox& box) {
+  if (const auto form = alignedForm(box)) {
+    return test(linear, form->box);
+  }
   return meets(linear, doubleComponent(linear), box, prepared(box));
 }
 
 template <typename T, typename BoxType>
-Intersection find(const T& linear, const BoxType& box) {
+Intersection findInOwnFrame(const T& linear, const BoxType& box) {
   const DoubleComponent component = doubleComponent(linear);
   Solution solution = solve(linear, component, box, prepared(box));
   return intersectionOf(linear, component, box, solution);
+}
+
+template <typename T>
+Intersection find(const T& linear, const AlignedBox& box) {
+  return findInOwnFrame(linear, box);
+}
+
+template <typename T>
+Intersection find(const T& linear, const OrientedBox& box) {
+  if (const auto form = alignedForm(box)) {
+    Intersection result = findInOwnFrame(linear, form->box);
+    result.entered = form->ownFaces(result.entered);
+    result.left = form->ownFaces(result.left);
+    return result;
+  }
+  return findInOwnFrame(linear, box);
 }
 
 template <typename T, typename BoxType>

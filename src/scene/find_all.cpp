@@ -1,57 +1,68 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "exact/clip.h"
+#include "geometry/solve.h"
 #include "scene/scene_impl.h"
 
 #include <box_query/scene.h>
 
 #include <algorithm>
-#include <utility>
 #include <variant>
 
 namespace box_query {
 namespace {
 
+/// Exact order of two boxes that the component meets.
 template <typename T>
-std::vector<BoxIntersection> findAllOf(const std::vector<Box>& boxes, const T& linear,
-                                       const BoxMask* mask) {
-  struct Found {
-    std::size_t box;
-    exact::Parameter enter;
+bool isEnteredBefore(const T& linear, const DoubleComponent& component, const Box& a,
+                     const Box& b) {
+  const auto solveBox = [&](const Box& box) {
+    return std::visit([&](const auto& x) { return solve(linear, component, x, prepared(x)); }, box);
   };
-  const exact::Component component = exact::component(linear);
-  std::vector<Found> found;
+  Solution at_a = solveBox(a);
+  Solution at_b = solveBox(b);
+  return compareEntries(linear, a, at_a, b, at_b) < 0;
+}
+
+template <typename T>
+std::vector<BoxIntersection> findAllOf(const std::vector<Box>& boxes,
+                                       const std::vector<Box>& simplest,
+                                       const std::vector<PreparedBox>& prepared_boxes,
+                                       const T& linear, const BoxMask* mask) {
+  const DoubleComponent component = doubleComponent(linear);
+  std::vector<BoxIntersection> found;
   forEachBox(boxes.size(), mask, [&](std::size_t i) {
-    exact::Clip clip = exact::clip(component, boxes[i]);
-    if (clip.num_points > 0) {
-      found.push_back({i, std::move(clip.enter)});
+    if (!enclose<T>(component, prepared_boxes[i]).isMiss()) {
+      BoxIntersection candidate{
+          i, std::visit([&](const auto& b) { return findIntersection(linear, b); }, boxes[i])};
+      if (candidate.intersection.num_points > 0) {
+        found.push_back(candidate);
+      }
     }
     return true;
   });
-  std::sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
-    const int order = compare(a.enter, b.enter);
-    return order < 0 || (order == 0 && a.box < b.box);
-  });
-  std::vector<BoxIntersection> result;
-  result.reserve(found.size());
-  for (const Found& f : found) {
-    result.push_back({f.box, std::visit([&](const auto& b) { return findIntersection(linear, b); },
-                                        boxes[f.box])});
-  }
-  return result;
+  // Rounding keeps the order, but for the parameters that it makes equal. Found in order of the
+  // index, ties stay in it.
+  std::stable_sort(found.begin(), found.end(),
+                   [&](const BoxIntersection& a, const BoxIntersection& b) {
+                     if (a.intersection.t_enter != b.intersection.t_enter) {
+                       return a.intersection.t_enter < b.intersection.t_enter;
+                     }
+                     return isEnteredBefore(linear, component, simplest[a.box], simplest[b.box]);
+                   });
+  return found;
 }
 
 }  // namespace
 
 std::vector<BoxIntersection> Scene::findAll(const Line& line, const BoxMask* mask) const {
-  return findAllOf(impl_->boxes, line, mask);
+  return findAllOf(impl_->boxes, impl_->simplest, impl_->prepared, line, mask);
 }
 
 std::vector<BoxIntersection> Scene::findAll(const Ray& ray, const BoxMask* mask) const {
-  return findAllOf(impl_->boxes, ray, mask);
+  return findAllOf(impl_->boxes, impl_->simplest, impl_->prepared, ray, mask);
 }
 
 std::vector<BoxIntersection> Scene::findAll(const Segment& segment, const BoxMask* mask) const {
-  return findAllOf(impl_->boxes, segment, mask);
+  return findAllOf(impl_->boxes, impl_->simplest, impl_->prepared, segment, mask);
 }
 
 }  // namespace box_query

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
 
 namespace box_query {
 
@@ -15,6 +16,24 @@ BoxMask::BoxMask(std::size_t size, bool all)
 void BoxMask::set(std::size_t box, bool look) noexcept {
   const std::uint64_t bit = std::uint64_t{1} << (box % 64);
   words_[box / 64] = look ? words_[box / 64] | bit : words_[box / 64] & ~bit;
+}
+
+PreparedBox::PreparedBox(const AlignedBox& box)
+    : kind(isModerate(box) ? Kind::kAligned : Kind::kExactOnly), aligned(doubleSlabs(box)) {}
+
+PreparedBox::PreparedBox(const OrientedBox& box)
+    : kind(isModerate(box) ? Kind::kOriented : Kind::kExactOnly), oriented(doubleSlabs(box)) {}
+
+Scene::Impl::Impl(std::vector<Box> all) : boxes(std::move(all)), simplest(boxes) {
+  prepared.reserve(boxes.size());
+  for (Box& box : simplest) {
+    if (const auto* oriented = std::get_if<OrientedBox>(&box)) {
+      if (const auto form = alignedForm(*oriented)) {
+        box = form->box;
+      }
+    }
+    prepared.push_back(std::visit([](const auto& b) { return PreparedBox(b); }, box));
+  }
 }
 
 Scene::Scene() : Scene(std::vector<Box>()) {}
@@ -27,9 +46,7 @@ Scene::Scene(std::vector<Box> boxes) {
                                   "not negative, the orientation not zero");
     }
   }
-  auto impl = std::make_shared<Impl>();
-  impl->boxes = std::move(boxes);
-  impl_ = std::move(impl);
+  impl_ = std::make_shared<const Impl>(std::move(boxes));
 }
 
 Scene::~Scene() = default;

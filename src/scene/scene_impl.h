@@ -1,14 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "geometry/aligned_form.h"
+#include "geometry/prepared_box.h"
+
 #include <box_query/scene.h>
 
 #include <vector>
 
 namespace box_query {
 
+/// A box of a Scene as the filter sees it, oriented or aligned.
+struct PreparedBox {
+  enum class Kind { kAligned, kOriented, kExactOnly };
+
+  explicit PreparedBox(const AlignedBox& box);
+  explicit PreparedBox(const OrientedBox& box);
+
+  /// kExactOnly: not moderate.
+  Kind kind;
+  union {
+    AlignedSlabs aligned;
+    OrientedSlabs oriented;
+  };
+};
+
 struct Scene::Impl {
+  explicit Impl(std::vector<Box> all);
+
   std::vector<Box> boxes;
+  std::vector<PreparedBox> prepared;
+  /// The boxes with those oriented ones that are aligned, exactly, in that form: what queries are
+  /// solved against. Only faces and normals need the box itself.
+  std::vector<Box> simplest;
 };
 
 /// Calls visit(index) for every box that the mask looks at, in order of the index, until it returns
@@ -20,6 +44,36 @@ void forEachBox(std::size_t size, const BoxMask* mask, Visit&& visit) {
       return;
     }
   }
+}
+
+/// Encloses entry and exit; everything is possible where the filter may not take the box or the
+/// component.
+template <typename T>
+Enclosure enclose(const DoubleComponent& component, const PreparedBox& box) {
+  switch (component.moderate ? box.kind : PreparedBox::Kind::kExactOnly) {
+    case PreparedBox::Kind::kAligned:
+      return enclose<T>(component, box.aligned);
+    case PreparedBox::Kind::kOriented:
+      return enclose<T>(component, box.oriented);
+    case PreparedBox::Kind::kExactOnly:
+      break;
+  }
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  return {kHasStart<T> ? 0.0 : -kInf, kInf, -kInf, kHasEnd<T> ? 1.0 : kInf};
+}
+
+/// Whether an undecided component certainly meets the box.
+template <typename T>
+bool crossesThinSlab(const DoubleComponent& component, const PreparedBox& box) {
+  switch (component.moderate ? box.kind : PreparedBox::Kind::kExactOnly) {
+    case PreparedBox::Kind::kAligned:
+      return crossesThinSlab<T>(slabTimes(component, box.aligned));
+    case PreparedBox::Kind::kOriented:
+      return crossesThinSlab<T>(slabTimes(component, box.oriented));
+    case PreparedBox::Kind::kExactOnly:
+      break;
+  }
+  return false;
 }
 
 }  // namespace box_query
