@@ -86,8 +86,8 @@ struct Blockage {
 /// An immutable set of boxes. All queries are const, take no lock and may run on any number of
 /// threads.
 ///
-/// Copies are cheap: they share what never changes. A scene that was moved from may only be assigned
-/// to or destroyed.
+/// Copies are cheap: they share what never changes. A scene that was moved from may only be
+/// assigned to or destroyed.
 ///
 /// A box is known by its index in the vector that the scene was made from. Answers do not depend on
 /// how the scene is organised inside. `mask`, where it is not null, has as many entries as the
