@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # What the commands of this package share: find ROS, install what is missing, build. To be sourced by bash.
-#   bq_set_up [--yes] GROUP...    groups of packages: build, demo, viewer, test, checks
+#   bq_set_up [--yes] GROUP...    groups of packages: build, demo, viewer, test, benchmark, checks
 #   bq_build BUILD_DIR TARGETS... [-- CMAKE_OPTION...]
 # Both return 1 after a sentence on stderr that says what to do.
 
@@ -13,6 +13,7 @@ bq_packages() {
   case $bq_ros/$1 in
     */build) echo build-essential cmake libeigen3-dev libboost-dev ;;&
     */test) echo libgmp-dev libgtest-dev ;;&
+    */benchmark) echo python3-matplotlib ;;
     debian/build) echo catkin libroscpp-dev libtf2-dev libtf2-ros-dev libtf2-msgs-dev libstd-msgs-dev \
       libgeometry-msgs-dev libvisualization-msgs-dev ros-std-msgs ros-geometry-msgs \
       ros-visualization-msgs ros-message-generation ros-message-runtime ;;

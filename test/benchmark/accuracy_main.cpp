@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "benchmark/accuracy.h"
+#include "benchmark/report.h"
+
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+
+namespace {
+
+using box_query::benchmark::Options;
+
+constexpr const char* kUsage =
+    R"(Run time against error: plain, padded, the paper's and this library's ways to intersect lines, rays and
+segments with boxes, side by side in one run, their answers compared with the exact ones.
+
+  --sample N       pairs compared with the exact answer for each table (100000); scenes take N / 20 rays
+  --rounds N       turns of each method on the clock (31)
+  --seed S         of all input (1)
+  --csv FILE       write the table there too
+)";
+
+/// The value of option `name` at argv[i], or null.
+const char* valueOf(const char* name, int argc, char** argv, int& i) {
+  if (std::strcmp(argv[i], name) != 0 || i + 1 >= argc) {
+    return nullptr;
+  }
+  return argv[++i];
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  std::string csv;
+  for (int i = 1; i < argc; ++i) {
+    if (const char* sample = valueOf("--sample", argc, argv, i)) {
+      options.pair_sample = std::stoul(sample);
+      options.scene_sample = options.pair_sample / 20;
+    } else if (const char* rounds = valueOf("--rounds", argc, argv, i)) {
+      options.rounds = std::stoi(rounds);
+    } else if (const char* seed = valueOf("--seed", argc, argv, i)) {
+      options.seed = std::stoull(seed);
+    } else if (const char* file = valueOf("--csv", argc, argv, i)) {
+      csv = file;
+    } else {
+      std::cerr << kUsage;
+      return std::strcmp(argv[i], "--help") == 0 ? 0 : 2;
+    }
+  }
+  std::vector<box_query::benchmark::Row> rows = measurePairs(options);
+  for (auto& row : measureScenes(options)) {
+    rows.push_back(std::move(row));
+  }
+  printTables(rows, std::cout);
+  if (!csv.empty()) {
+    std::ofstream file(csv);
+    writeCsv(rows, file);
+    if (!file.flush()) {
+      std::cerr << "Cannot write " << csv << '\n';
+      return 1;
+    }
+  }
+  return 0;
+}
