@@ -2,54 +2,115 @@
 #include "exact/rounding.h"
 #include "geometry/distance_exact.h"
 #include "geometry/distance_points.h"
+#include "geometry/distance_query.h"
+#include "geometry/prepared_box.h"
 
 #include <box_query/distance.h>
+#include <box_query/intersection.h>
 
 namespace box_query {
 namespace {
 
-template <typename AnyBox>
-SegmentDistance distanceOf(const Segment& segment, const AnyBox& box) {
-  const exact::Nearest nearest = exact::nearest(exact::segmentAtBox(segment, box));
-  SegmentDistance result;
-  result.distance = exact::roundedSqrt(nearest.squared.num, nearest.squared.den);
-  result.t = exact::roundedQuotient(nearest.t.num, nearest.t.den);
-  setClosestPoints(segment, box, result);
-  return result;
+template <typename BoxType>
+NearestEstimate estimateOf(const Segment& segment, const BoxType& box) {
+  return estimateNearest(segment, doubleSlabs(box));
 }
 
-template <typename AnyBox>
-bool isClearOf(const Segment& segment, const AnyBox& box, double radius) {
-  const exact::Nearest nearest = exact::nearest(exact::segmentAtBox(segment, box));
-  return compare(nearest.squared, exact::Ratio{exact::Dyadic(radius) * radius, 1.0}) > 0;
-}
-
-template <typename AnyBox>
-double blockedAtOf(const Segment& segment, const AnyBox& box, double radius) {
-  const std::optional<exact::Root> root =
-      exact::firstWithin(exact::segmentAtBox(segment, box), radius);
-  if (!root) {
-    return std::numeric_limits<double>::infinity();
+template <typename BoxType>
+RoundedDistance nearestOf(const Segment& segment, const BoxType& box, const NearestEstimate& e) {
+  if (e.bounds.lower > 0.0) {
+    if (const auto refined = refinedDistance(segment, box, e.slabs, e.guess)) {
+      return *refined;
+    }
+  } else if (testIntersection(segment, box)) {
+    return {0.0, findIntersection(segment, box).t_enter};
   }
-  return radius == 0.0 ? exact::roundedQuotient(root->p, root->s) : exact::roundedDown(*root);
+  const exact::Nearest nearest = exact::nearest(exact::segmentAtBox(segment, box));
+  return {exact::roundedSqrt(nearest.squared.num, nearest.squared.den),
+          exact::roundedQuotient(nearest.t.num, nearest.t.den)};
+}
+
+template <typename BoxType>
+double blockedAtOf(const Segment& segment, const BoxType& box, double radius) {
+  if (radius == 0.0) {
+    return findIntersection(segment, box).t_enter;
+  }
+  const NearestEstimate estimate = estimateOf(segment, box);
+  return isFarther(segment, box, estimate, radius)
+             ? std::numeric_limits<double>::infinity()
+             : roundedFirstWithin(segment, box, estimate, radius);
 }
 
 }  // namespace
 
+template <typename BoxType>
+SegmentDistance roundedDistance(const Segment& segment, const BoxType& box,
+                                const NearestEstimate& estimate) {
+  const RoundedDistance nearest = nearestOf(segment, box, estimate);
+  SegmentDistance result;
+  result.distance = nearest.distance;
+  result.t = nearest.t;
+  setClosestPoints(segment, box, result);
+  return result;
+}
+
+template <typename BoxType>
+bool isFarther(const Segment& segment, const BoxType& box, const NearestEstimate& estimate,
+               double radius) {
+  if (estimate.bounds.lower > radius) {
+    return true;
+  }
+  if (estimate.bounds.upper <= radius) {
+    return false;
+  }
+  if (radius == 0.0) {
+    return !testIntersection(segment, box);
+  }
+  const exact::Nearest nearest = exact::nearest(exact::segmentAtBox(segment, box));
+  return compare(nearest.squared, exact::Ratio{exact::Dyadic(radius) * radius, 1.0}) > 0;
+}
+
+template <typename BoxType>
+double roundedFirstWithin(const Segment& segment, const BoxType& box,
+                          const NearestEstimate& estimate, double radius) {
+  const SegmentSlabs& slabs = estimate.slabs;
+  if (slabs.isInRange()) {
+    const Excess start = excessAt(slabs, 0.0);
+    if (std::sqrt(dot(start, start)) + slabs.error() <= radius) {
+      return 0.0;
+    }
+    const double guess = guessFirstWithin(slabs, radius);
+    if (const auto refined = refinedFirstWithin(segment, box, slabs, radius, guess)) {
+      return *refined;
+    }
+  }
+  return exact::roundedDown(*exact::firstWithin(exact::segmentAtBox(segment, box), radius));
+}
+
+template SegmentDistance roundedDistance(const Segment&, const AlignedBox&, const NearestEstimate&);
+template SegmentDistance roundedDistance(const Segment&, const OrientedBox&,
+                                         const NearestEstimate&);
+template bool isFarther(const Segment&, const AlignedBox&, const NearestEstimate&, double);
+template bool isFarther(const Segment&, const OrientedBox&, const NearestEstimate&, double);
+template double roundedFirstWithin(const Segment&, const AlignedBox&, const NearestEstimate&,
+                                   double);
+template double roundedFirstWithin(const Segment&, const OrientedBox&, const NearestEstimate&,
+                                   double);
+
 SegmentDistance distance(const Segment& segment, const AlignedBox& box) noexcept {
-  return distanceOf(segment, box);
+  return roundedDistance(segment, box, estimateOf(segment, box));
 }
 
 SegmentDistance distance(const Segment& segment, const OrientedBox& box) noexcept {
-  return distanceOf(segment, box);
+  return roundedDistance(segment, box, estimateOf(segment, box));
 }
 
 bool isClear(const Segment& segment, const AlignedBox& box, double radius) noexcept {
-  return isClearOf(segment, box, radius);
+  return isFarther(segment, box, estimateOf(segment, box), radius);
 }
 
 bool isClear(const Segment& segment, const OrientedBox& box, double radius) noexcept {
-  return isClearOf(segment, box, radius);
+  return isFarther(segment, box, estimateOf(segment, box), radius);
 }
 
 double blockedAt(const Segment& segment, const AlignedBox& box, double radius) noexcept {

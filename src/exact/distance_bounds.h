@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Error bounds of segment distances; tests replace this file by one with smaller bounds and expect
+/// wrong answers.
+#pragma once
+
+namespace box_query::exact::bounds {
+
+/// Distances from DoubleSlabs, whose scale is s: see geometry/distance_filter.h.
+constexpr double kDistance = 160 * 0x1p-53;
+/// The slope of the squared distance, times |direction|_1 s.
+constexpr double kSlope = 160 * 0x1p-53;
+/// Scales that the filter takes: nothing overflows, and what underflow adds is far below the
+/// bounds.
+constexpr double kSmallestScale = 0x1p-100;
+constexpr double kLargestScale = 0x1p100;
+/// The same of the squared norm of a quaternion.
+constexpr double kSmallestStretch = 0x1p-200;
+constexpr double kLargestStretch = 0x1p200;
+
+/// Distance from a segment to the center of a box, times the largest |.|_1 of centers and ends: see
+/// scene/bounding_spheres.h.
+constexpr double kSphere = 128 * 0x1p-53;
+/// Length of a segment that counts as a point, and more than what underflow takes from a radius.
+constexpr double kSmallestSphere = 0x1p-99;
+/// The radius of a sphere: a difference, three squares, their sum and root, relative.
+constexpr double kSphereRadius = 1.0 + 16 * 0x1p-53;
+
+}  // namespace box_query::exact::bounds

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// In the frame of the box stretched by n = |q|^2, in double-double, with u = 2^-53: an excess at t
+// is c + t v, where c, the start seen from a face, and v, the direction, are each within
+// eta = 64u^2 n (S + E + D) of the exact ones (exact/bounds.h), so that an excess is within 2.4
+// eta.
+//
+// On the piece of f that holds the nearest point t*, with the guess t near it,
+//   g = sum v_i ex_i,  A = sum v_i^2,  t* = t - g / A,  f(t*) = f(t) - g^2 / A,
+// and both corrections are so small that double is enough for A. g is within 3 eta (|v|_1 +
+// |ex|_1), A within (5u + 3.5 eta / |v|_2) A, f(t) within 5 eta |ex|_1 + 35u^2 f(t), g^2 / A within
+// 2 |g / A| times the error of g, which is less than 6.1 eta |ex|_1 where the sides are certain.
+#include "geometry/distance_refine.h"
+
+#include "exact/bounds.h"
+#include "exact/double_double.h"
+#include "geometry/prepared_box.h"
+
+namespace box_query {
+namespace {
+
+using exact::DoubleDouble;
+namespace bounds = exact::bounds;
+
+/// A sum of products, within 35u^2 of the sum of their absolute values.
+class DotSum {
+ public:
+  DotSum& add(const DoubleDouble& a, const DoubleDouble& b) {
+    const DoubleDouble product = exact::twoProd(a.hi, b.hi);
+    const DoubleDouble sum = exact::twoSum(hi_, product.hi);
+    hi_ = sum.hi;
+    lo_ += sum.lo + (product.lo + (a.hi * b.lo + a.lo * b.hi));
+    return *this;
+  }
+  DoubleDouble value() const { return exact::fastTwoSum(hi_, lo_); }
+
+ private:
+  double hi_ = 0.0;
+  double lo_ = 0.0;
+};
+
+/// One axis of the box: where the start is, from a face of it, and the direction.
+struct WideAxis {
+  DoubleDouble from_face;
+  DoubleDouble direction;
+};
+
+template <typename BoxType>
+class WideFrame;
+
+template <>
+class WideFrame<AlignedBox> {
+ public:
+  WideFrame(const Segment& segment, const AlignedBox& box) : segment_(segment), box_(box) {}
+  DoubleDouble stretch() const { return {1.0, 0.0}; }
+  WideAxis axis(int i, bool positive) const {
+    return {exact::twoDiff(segment_.start[i], (positive ? box_.max : box_.min)[i]),
+            exact::twoDiff(segment_.end[i], segment_.start[i])};
+  }
+
+ private:
+  const Segment& segment_;
+  const AlignedBox& box_;
+};
+
+template <>
+class WideFrame<OrientedBox> {
+ public:
+  WideFrame(const Segment& segment, const OrientedBox& box)
+      : box_(box), rows_(doubleDoubleRows(box.orientation)) {
+    for (int j = 0; j < 3; ++j) {
+      start_[j] = exact::twoDiff(segment.start[j], box.center[j]);
+      direction_[j] = exact::twoDiff(segment.end[j], segment.start[j]);
+    }
+  }
+  DoubleDouble stretch() const { return rows_.n; }
+  WideAxis axis(int i, bool positive) const {
+    const DoubleDouble* row = rows_.axes[i];
+    const double extent = box_.half_extents[i];
+    return {DotSum()
+                .add(row[0], start_[0])
+                .add(row[1], start_[1])
+                .add(row[2], start_[2])
+                .add(rows_.n, {positive ? -extent : extent, 0.0})
+                .value(),
+            DotSum()
+                .add(row[0], direction_[0])
+                .add(row[1], direction_[1])
+                .add(row[2], direction_[2])
+                .value()};
+  }
+
+ private:
+  const OrientedBox& box_;
+  Rows rows_;
+  DoubleDouble start_[3];
+  DoubleDouble direction_[3];
+};
+
+/// f and its first two derivatives at t, stretched, on the piece that `sides` tells.
+struct WideValue {
+  DoubleDouble squared;  ///< f
+  DoubleDouble slope;    ///< f' / 2
+  double curvature;      ///< f'' / 2
+  double excess_sum;     ///< sum |ex_i|
+  double direction_sum;  ///< sum |v_i| over the same axes
+};
+
+template <typename Frame>
+WideValue wideValue(const Frame& frame, double t, const Excess& sides) {
+  DotSum squared;
+  DotSum slope;
+  WideValue value{{}, {}, 0.0, 0.0, 0.0};
+  for (int i = 0; i < 3; ++i) {
+    const double side = sides[static_cast<std::size_t>(i)];
+    if (side != 0.0) {
+      const WideAxis axis = frame.axis(i, side > 0.0);
+      const DoubleDouble excess =
+          DotSum().add(axis.from_face, {1.0, 0.0}).add(axis.direction, {t, 0.0}).value();
+      squared.add(excess, excess);
+      slope.add(axis.direction, excess);
+      value.curvature += axis.direction.hi * axis.direction.hi;
+      value.excess_sum += std::fabs(excess.hi);
+      value.direction_sum += std::fabs(axis.direction.hi);
+    }
+  }
+  value.squared = squared.value();
+  value.slope = slope.value();
+  return value;
+}
+
+/// Whether the excess certainly keeps its sides at every parameter within `change` of t.
+bool sidesAreCertain(const SegmentSlabs& s, double t, const Excess& sides, double change) {
+  const double error = s.error() + std::fabs(change) * s.scale;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double x = t * s.direction[i];
+    const bool certain = sides[i] != 0.0 ? std::fabs(sides[i]) > error
+                                         : x - s.below[i] > error && s.above[i] - x > error;
+    if (!certain) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Together with the range of the slabs: nothing overflows, and what underflows, even of a
+/// component of the quaternion, is far below the error.
+bool isInRange(const DoubleDouble& n) {
+  return n.hi >= bounds::kSmallestStretch && n.hi <= bounds::kLargestStretch;
+}
+
+/// The error of an excess in the stretched frame.
+double wideError(const SegmentSlabs& slabs, const DoubleDouble& n) {
+  return bounds::kRow * 2.0 * n.hi * slabs.scale;
+}
+
+/// Ziv's test: the double that every number within `error` of x rounds to, if there is one.
+std::optional<double> rounded(const DoubleDouble& x, double error) {
+  const double low = x.hi + (x.lo - error);
+  const double high = x.hi + (x.lo + error);
+  return low == high ? std::optional<double>(low) : std::nullopt;
+}
+
+}  // namespace
+
+template <typename BoxType>
+std::optional<RoundedDistance> refinedDistance(const Segment& segment, const BoxType& box,
+                                               const SegmentSlabs& slabs,
+                                               const NearestGuess& guess) {
+  const WideFrame<BoxType> frame(segment, box);
+  if (!isInRange(frame.stretch())) {
+    return std::nullopt;
+  }
+  const WideValue f = wideValue(frame, guess.t, guess.excess);
+  const double eta = wideError(slabs, frame.stretch());
+
+  const double slope = dot(slabs.direction, guess.excess);
+  const bool at_end =
+      (guess.t == 0.0 && (slope > slabs.slopeError() || segment.start == segment.end)) ||
+      (guess.t == 1.0 && slope < -slabs.slopeError());
+  double change = 0.0;
+  double curvature_error = 0.0;
+  double t_error = 0.0;
+  if (!at_end) {
+    change = -f.slope.hi / f.curvature;
+    curvature_error = 16.0 * bounds::kUnit + 4.0 * eta / std::sqrt(f.curvature);
+    t_error = 4.0 * eta * (f.direction_sum + f.excess_sum) / f.curvature +
+              std::fabs(change) * curvature_error;
+  }
+  if (!sidesAreCertain(slabs, guess.t, guess.excess, change)) {
+    return std::nullopt;
+  }
+  const std::optional<double> t = rounded(exact::twoSum(guess.t, change), t_error);
+  if (!t || !(at_end || (*t > 0.0 && *t < 1.0))) {
+    return std::nullopt;
+  }
+
+  const double fall = change * change * f.curvature;
+  const DoubleDouble squared = exact::fastTwoSum(f.squared.hi, f.squared.lo - fall);
+  const DoubleDouble distance = sqrt(squared) / frame.stretch();
+  const double relative_error =
+      (6.0 * eta * f.excess_sum + 4.0 * curvature_error * fall) / squared.hi +
+      2.0 * bounds::kOperation;
+  const std::optional<double> rounded_distance = rounded(distance, distance.hi * relative_error);
+  if (!rounded_distance) {
+    return std::nullopt;
+  }
+  return RoundedDistance{*rounded_distance, *t};
+}
+
+template <typename BoxType>
+std::optional<double> refinedFirstWithin(const Segment& segment, const BoxType& box,
+                                         const SegmentSlabs& slabs, double radius, double guess) {
+  const WideFrame<BoxType> frame(segment, box);
+  const DoubleDouble n = frame.stretch();
+  if (!isInRange(n)) {
+    return std::nullopt;
+  }
+  const DoubleDouble reach = n * DoubleDouble{radius, 0.0};
+  const DoubleDouble limit = reach * reach;
+  const double eta = wideError(slabs, n);
+
+  double t = guess;
+  for (int step = 0; step < 4; ++step) {
+    // The distance must fall from 0 to t, be at least the radius at t, and less at its neighbour.
+    const double next = std::nextafter(t, 1.0);
+    const Excess sides = excessAt(slabs, t);
+    if (!(t > 0.0 && next < 1.0) || !isFalling(slabs, sides) ||
+        !sidesAreCertain(slabs, t, sides, next - t)) {
+      return std::nullopt;
+    }
+    const WideValue at = wideValue(frame, t, sides);
+    const WideValue after = wideValue(frame, next, sides);
+    const double error = 6.0 * eta * at.excess_sum + 2.0 * bounds::kOperation * limit.hi;
+    const DoubleDouble rest = at.squared - limit;
+    if (rest.hi > error && (after.squared - limit).hi < -error) {
+      return t;
+    }
+    // Newton's method from the left, but for the rounding of the sum.
+    t = std::min(t - rest.hi / (2.0 * at.slope.hi), 1.0);
+    if (rest.hi < 0.0) {
+      t = std::nextafter(t, 0.0);
+    }
+  }
+  return std::nullopt;
+}
+
+template std::optional<RoundedDistance> refinedDistance(const Segment&, const AlignedBox&,
+                                                        const SegmentSlabs&, const NearestGuess&);
+template std::optional<RoundedDistance> refinedDistance(const Segment&, const OrientedBox&,
+                                                        const SegmentSlabs&, const NearestGuess&);
+template std::optional<double> refinedFirstWithin(const Segment&, const AlignedBox&,
+                                                  const SegmentSlabs&, double, double);
+template std::optional<double> refinedFirstWithin(const Segment&, const OrientedBox&,
+                                                  const SegmentSlabs&, double, double);
+
+}  // namespace box_query
