@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "exact/rounding.h"
+#include "geometry/aligned_form.h"
 #include "geometry/distance_exact.h"
 #include "geometry/distance_points.h"
 #include "geometry/distance_query.h"
@@ -102,6 +103,9 @@ SegmentDistance distance(const Segment& segment, const AlignedBox& box) noexcept
 }
 
 SegmentDistance distance(const Segment& segment, const OrientedBox& box) noexcept {
+  if (const auto form = alignedForm(box)) {
+    return distance(segment, form->box);
+  }
   return roundedDistance(segment, box, estimateOf(segment, box));
 }
 
@@ -110,6 +114,9 @@ bool isClear(const Segment& segment, const AlignedBox& box, double radius) noexc
 }
 
 bool isClear(const Segment& segment, const OrientedBox& box, double radius) noexcept {
+  if (const auto form = alignedForm(box)) {
+    return isClear(segment, form->box, radius);
+  }
   return isFarther(segment, box, estimateOf(segment, box), radius);
 }
 
@@ -118,6 +125,9 @@ double blockedAt(const Segment& segment, const AlignedBox& box, double radius) n
 }
 
 double blockedAt(const Segment& segment, const OrientedBox& box, double radius) noexcept {
+  if (const auto form = alignedForm(box)) {
+    return blockedAt(segment, form->box, radius);
+  }
   return blockedAtOf(segment, box, radius);
 }
 

@@ -10,16 +10,18 @@
 
 namespace box_query {
 
-/// What the first stage knows of a segment and a box.
+/// What the first stage knows of a segment and a box: nothing, where their numbers are out of
+/// range.
 struct NearestEstimate {
-  SegmentSlabs slabs;
-  NearestGuess guess;
+  SegmentSlabs slabs{};
+  NearestGuess guess{};
   DistanceBounds bounds{0.0, std::numeric_limits<double>::infinity()};
 };
 
 template <typename SlabsType>
 NearestEstimate estimateNearest(const Segment& segment, const SlabsType& box) {
-  NearestEstimate e{segmentSlabs(segment, box), {}};
+  NearestEstimate e;
+  e.slabs = segmentSlabs(segment, box);
   if (e.slabs.isInRange()) {
     e.guess = guessNearest(e.slabs);
     e.bounds = distanceBounds(e.slabs, e.guess.excess);

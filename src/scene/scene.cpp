@@ -24,7 +24,7 @@ PreparedBox::PreparedBox(const AlignedBox& box)
 PreparedBox::PreparedBox(const OrientedBox& box)
     : kind(isModerate(box) ? Kind::kOriented : Kind::kExactOnly), oriented(doubleSlabs(box)) {}
 
-Scene::Impl::Impl(std::vector<Box> all) : boxes(std::move(all)), simplest(boxes) {
+Scene::Impl::Impl(std::vector<Box> all) : boxes(std::move(all)), simplest(boxes), spheres(boxes) {
   prepared.reserve(boxes.size());
   for (Box& box : simplest) {
     if (const auto* oriented = std::get_if<OrientedBox>(&box)) {

@@ -3,6 +3,7 @@
 
 #include "geometry/aligned_form.h"
 #include "geometry/prepared_box.h"
+#include "scene/bounding_spheres.h"
 
 #include <box_query/scene.h>
 
@@ -33,6 +34,7 @@ struct Scene::Impl {
   /// The boxes with those oriented ones that are aligned, exactly, in that form: what queries are
   /// solved against. Only faces and normals need the box itself.
   std::vector<Box> simplest;
+  BoundingSpheres spheres;
 };
 
 /// Calls visit(index) for every box that the mask looks at, in order of the index, until it returns

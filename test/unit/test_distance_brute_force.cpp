@@ -353,10 +353,10 @@ TEST_P(DistanceFamily, AgreesWithBruteForce) {
 // Rational numbers of mixed scales have thousands of bits: fewer of those.
 INSTANTIATE_TEST_SUITE_P(
     , DistanceFamily,
-    testing::Values(Family{"random", &random, 300}, Family{"lattice", &lattice, 1000},
-                    Family{"nudged_lattice", &nudgedLattice, 60},
-                    Family{"far_away", &farAway, 1000}, Family{"near_parallel", &nearParallel, 300},
-                    Family{"any_scale", &anyScale, 30}, Family{"denormal", &denormal, 300}),
+    testing::Values(Family{"random", &random, 150}, Family{"lattice", &lattice, 1000},
+                    Family{"nudged_lattice", &nudgedLattice, 40},
+                    Family{"far_away", &farAway, 1000}, Family{"near_parallel", &nearParallel, 150},
+                    Family{"any_scale", &anyScale, 20}, Family{"denormal", &denormal, 300}),
     [](const auto& param) { return std::string(param.param.name); });
 
 }  // namespace
