@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ros/answers.h"
+#include "ros/named_boxes.h"
+
+namespace box_query {
+namespace {
+
+OrientedBox oriented(const OrientedBox& box) {
+  return box;
+}
+
+OrientedBox oriented(const AlignedBox& box) {
+  return {0.5 * box.min + 0.5 * box.max, Quaternion::Identity(), 0.5 * box.max - 0.5 * box.min};
+}
+
+}  // namespace
+
+void answer(const Snapshot& snapshot, const ros::Time& now, GetSceneResponse& response) {
+  describeScene(snapshot, now, response);
+  for (std::size_t i = 0; i < snapshot.names.size(); ++i) {
+    const OrientedBox box =
+        std::visit([](const auto& solid) { return oriented(solid); }, snapshot.scene.boxes()[i]);
+    geometry_msgs::Pose pose;
+    pose.position = toPoint(box.center);
+    pose.orientation.w = box.orientation.w();
+    pose.orientation.x = box.orientation.x();
+    pose.orientation.y = box.orientation.y();
+    pose.orientation.z = box.orientation.z();
+    response.poses.push_back(pose);
+    response.sizes.push_back(toVector3(2 * box.half_extents));
+    response.stamps.push_back(snapshot.stamps[i]);
+    appendName(snapshot.names[i], response);
+  }
+}
+
+}  // namespace box_query

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What the services answer, without ROS communication: a request is checked, and then answered
+/// from a snapshot. The meaning of every field is in srv/.
+#pragma once
+
+#include "ros/conversions.h"
+#include "ros/drawing.h"
+
+#include <box_query/CastRay.h>
+#include <box_query/CastRays.h>
+#include <box_query/CheckSegment.h>
+#include <box_query/CheckSegments.h>
+#include <box_query/FindIntersections.h>
+#include <box_query/GetScene.h>
+#include <box_query/ros/scene_monitor.h>
+
+#include <cstddef>
+
+#include <ros/time.h>
+
+namespace box_query {
+
+/// Whether a request can be answered at all: everything but its frame.
+/// @throws std::invalid_argument with a sentence that says what to do, and which index is at fault.
+void check(const CastRayRequest& request, std::size_t max_queries);
+void check(const CastRaysRequest& request, std::size_t max_queries);
+void check(const CheckSegmentRequest& request, std::size_t max_queries);
+void check(const CheckSegmentsRequest& request, std::size_t max_queries);
+void check(const FindIntersectionsRequest& request, std::size_t max_queries);
+
+/// What a request is answered from.
+struct Context {
+  const Snapshot& snapshot;
+  ros::Time now;      ///< ROS time of the answer
+  FrameChange frame;  ///< from the frame of the request
+  Drawing drawing;    ///< filled by the answer
+};
+
+/// Fills the whole response but for `success` and `message`.
+/// @pre check(request)
+/// @throws std::invalid_argument if a number overflows in the fixed frame.
+void answer(const CastRayRequest& request, Context& context, CastRayResponse& response);
+void answer(const CastRaysRequest& request, Context& context, CastRaysResponse& response);
+void answer(const CheckSegmentRequest& request, Context& context, CheckSegmentResponse& response);
+void answer(const CheckSegmentsRequest& request, Context& context, CheckSegmentsResponse& response);
+void answer(const FindIntersectionsRequest& request, Context& context,
+            FindIntersectionsResponse& response);
+void answer(const Snapshot& snapshot, const ros::Time& now, GetSceneResponse& response);
+
+/// A response that answers nothing: every number undefined, every array empty.
+template <class Response>
+Response nothing() {
+  return Response();
+}
+template <>
+CastRayResponse nothing();
+template <>
+CheckSegmentResponse nothing();
+template <>
+CheckSegmentsResponse nothing();
+
+/// The part that all responses share: the scene, its age, and whether it is complete.
+template <class Response>
+void describeScene(const Snapshot& snapshot, const ros::Time& now, Response& response) {
+  const Completeness completeness = snapshot.completeness(now);
+  response.scene_id = snapshot.id;
+  response.scene_age = snapshot.age(now);
+  response.complete = completeness.complete;
+  response.reason = completeness.reason;
+  if constexpr (std::is_same_v<Response, GetSceneResponse>) {
+    response.header.stamp = snapshot.stamp;
+    response.header.frame_id = snapshot.frame;
+  } else {
+    response.scene_stamp = snapshot.stamp;
+  }
+}
+
+}  // namespace box_query

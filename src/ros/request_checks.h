@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The sentences with which requests are refused.
+#pragma once
+
+#include "ros/box_filter.h"
+
+#include <box_query/geometry.h>
+
+#include <cstddef>
+#include <limits>
+#include <string>
+
+#include <std_msgs/Header.h>
+
+namespace box_query {
+
+/// A field of a request, or one element of an array; made into text only where it is at fault.
+struct Field {
+  static constexpr std::size_t kWhole = std::numeric_limits<std::size_t>::max();
+
+  const char* name;
+  std::size_t index = kWhole;
+
+  std::string text() const;
+};
+
+[[noreturn]] void refuse(const Field& field, const std::string& why);
+
+void checkFinite(const Field& field, const Vector3& vector);
+void checkDirection(const Field& field, const Vector3& direction);
+/// 0 and +inf are unlimited.
+void checkMaxRange(const Field& field, double max_range);
+void checkRadius(const Field& field, double radius);
+/// An array of one element a query, or a single one for all, or, if `may_be_empty`, none.
+void checkLength(const char* name, std::size_t length, std::size_t queries, bool may_be_empty);
+void checkCount(const char* what, std::size_t count, std::size_t max_queries);
+
+/// What all requests share.
+void checkHeader(const std_msgs::Header& header);
+template <class Request>
+void checkCommon(const Request& request) {
+  checkHeader(request.header);
+  check(BoxFilter(request));
+}
+
+/// Element `i` of an array of one element a query, or a single one for all.
+template <class Array>
+const auto& elementAt(const Array& array, std::size_t i) {
+  return array.size() == 1 ? array[0] : array[i];
+}
+
+}  // namespace box_query
