@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// ~markers: what the node believes, and what it was asked last.
+#pragma once
+
+#include "ros/drawing.h"
+
+#include <box_query/ros/scene_monitor.h>
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+
+namespace box_query {
+
+/// Publishes markers from a thread of its own, only while somebody subscribes: the boxes whenever
+/// they have changed, and at once to a new subscriber; the queries since the last time.
+class Markers {
+ public:
+  Markers(ros::NodeHandle& private_nh, SceneMonitor& monitor);
+  ~Markers();
+  Markers(const Markers&) = delete;
+  Markers& operator=(const Markers&) = delete;
+
+  /// What a query should be drawn on: nothing, where nobody looks.
+  Drawing drawing() const;
+
+  /// Takes queries over; never waits for markers being built.
+  void show(std::vector<DrawnQuery> queries);
+
+ private:
+  void run();
+  void welcome(const ros::SingleSubscriberPublisher& subscriber);
+  void publish();
+
+  SceneMonitor& monitor_;
+  ros::CallbackQueue queue_;  ///< of the thread: subscribers that come
+  ros::Publisher publisher_;
+  std::atomic<bool> wanted_{false};
+  SnapshotPtr shown_;  ///< what every subscriber has got; of the thread
+  std::int32_t last_id_ = 0;
+
+  std::mutex mutex_;
+  std::vector<DrawnQuery> queries_;  ///< to be shown, guarded by mutex_
+
+  std::thread thread_;
+};
+
+}  // namespace box_query

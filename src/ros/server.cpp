@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ros/server.h"
+
+#include "ros/answers.h"
+#include "ros/box_source.h"
+
+#include <stdexcept>
+
+#include <ros/console.h>
+
+namespace box_query {
+
+template <class Service>
+void Server::advertise(ros::NodeHandle& private_nh, const std::string& name) {
+  // A segment has two points: no array that is taken needs to be longer.
+  const auto queries = static_cast<std::uint32_t>(monitor_.parameters().max_queries_per_call);
+  services_.push_back(
+      advertiseChecked<Service>(private_nh, name, 2 * queries, queue_,
+                                [this](CheckedRequest<typename Service::Request>& request,
+                                       typename Service::Response& response) {
+                                  handle(request, response);
+                                  return true;
+                                }));
+}
+
+Server::Server(ros::NodeHandle& private_nh, SceneMonitor& monitor)
+    : monitor_(monitor),
+      markers_(private_nh, monitor),
+      spinner_(static_cast<std::uint32_t>(monitor.parameters().service_threads), &queue_) {
+  advertise<CastRay>(private_nh, "cast_ray");
+  advertise<CastRays>(private_nh, "cast_rays");
+  advertise<CheckSegment>(private_nh, "check_segment");
+  advertise<CheckSegments>(private_nh, "check_segments");
+  advertise<FindIntersections>(private_nh, "find_intersections");
+  advertise<GetScene>(private_nh, "get_scene");
+  spinner_.start();
+
+  std::string topics;
+  for (const TopicState& topic : monitor.scene()->topics) {
+    topics += (topics.empty() ? "" : ", ") + topic.parameters.topic;
+  }
+  std::string services;
+  for (const ros::ServiceServer& service : services_) {
+    services += (services.empty() ? "" : ", ") + service.getService();
+  }
+  ROS_INFO_STREAM("boxes of " << topics << " in frame " << monitor.parameters().fixed_frame
+                              << " are asked for through " << services);
+}
+
+FrameChange Server::frameOf(const std_msgs::Header& header) const {
+  const Parameters& parameters = monitor_.parameters();
+  if (stripSlash(header.frame_id) == parameters.fixed_frame) {
+    return FrameChange();
+  }
+  geometry_msgs::TransformStamped transform;
+  const std::string missing =
+      monitor_.lookUpTransform(parameters.fixed_frame, header.frame_id, header.stamp,
+                               parameters.transform_timeout, transform);
+  if (!missing.empty()) {
+    throw std::runtime_error(missing);
+  }
+  return FrameChange(transform.transform);
+}
+
+template <class Request, class Response>
+void Server::answerNow(const Request& request, Response& response) {
+  check(request, static_cast<std::size_t>(monitor_.parameters().max_queries_per_call));
+  const FrameChange frame = frameOf(request.header);
+  const SnapshotPtr snapshot = monitor_.currentScene();
+  Context context = {*snapshot, ros::Time::now(), frame, markers_.drawing()};
+  answer(request, context, response);
+  markers_.show(context.drawing.take());
+}
+
+void Server::answerNow(const GetSceneRequest& request, GetSceneResponse& response) {
+  const SnapshotPtr snapshot =
+      request.scene_id == 0 ? monitor_.currentScene() : monitor_.sceneById(request.scene_id);
+  if (!snapshot) {
+    throw std::runtime_error("scene " + std::to_string(request.scene_id) +
+                             " is not kept: ~kept_scenes keeps the last " +
+                             std::to_string(monitor_.parameters().kept_scenes) +
+                             " that were asked; 0 is the current one");
+  }
+  answer(*snapshot, ros::Time::now(), response);
+}
+
+template <class Request, class Response>
+void Server::handle(const CheckedRequest<Request>& checked, Response& response) {
+  try {
+    if (!checked.problem.empty()) {
+      throw std::runtime_error(checked.problem);
+    }
+    answerNow(checked.request, response);
+    response.success = true;
+  } catch (const std::exception& error) {
+    response = nothing<Response>();
+    describeScene(*monitor_.scene(), ros::Time::now(), response);
+    response.message = error.what();
+  }
+}
+
+}  // namespace box_query

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The services of the node, in front of a SceneMonitor.
+#pragma once
+
+#include "ros/checked_request.h"
+#include "ros/conversions.h"
+#include "ros/markers.h"
+
+#include <box_query/GetScene.h>
+#include <box_query/ros/scene_monitor.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/service_server.h>
+#include <ros/spinner.h>
+#include <std_msgs/Header.h>
+
+namespace box_query {
+
+/// Answers on Parameters::service_threads threads of its own, until it is destroyed.
+class Server {
+ public:
+  Server(ros::NodeHandle& private_nh, SceneMonitor& monitor);
+
+ private:
+  template <class Service>
+  void advertise(ros::NodeHandle& private_nh, const std::string& name);
+
+  /// Answers a request or refuses it; never throws for what a request says.
+  template <class Request, class Response>
+  void handle(const CheckedRequest<Request>& checked, Response& response);
+
+  template <class Request, class Response>
+  void answerNow(const Request& request, Response& response);
+  void answerNow(const GetSceneRequest& request, GetSceneResponse& response);
+
+  /// Waits for the transform of the request's frame.
+  /// @throws std::runtime_error saying what was missing.
+  FrameChange frameOf(const std_msgs::Header& header) const;
+
+  SceneMonitor& monitor_;
+  Markers markers_;
+  ros::CallbackQueue queue_;
+  std::vector<ros::ServiceServer> services_;
+  ros::AsyncSpinner spinner_;
+};
+
+}  // namespace box_query

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How the node starts and stops. BQ_NODE is its path.
+#include <box_query/GetScene.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <ros/duration.h>
+#include <ros/init.h>
+#include <ros/node_handle.h>
+#include <ros/param.h>
+#include <ros/service.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char** environ;
+
+namespace {
+
+struct Ending {
+  int exit_code = -1;  // -1: ended by a signal
+  std::string output;
+};
+
+/// A node process whose output is read, with a bound on how long it may take to end.
+class Process {
+ public:
+  explicit Process(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), BQ_NODE);
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) {
+      argv.push_back(argument.data());
+    }
+    argv.push_back(nullptr);
+    output_ = std::tmpfile();
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, fileno(output_), STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, fileno(output_), STDERR_FILENO);
+    EXPECT_EQ(posix_spawn(&pid_, BQ_NODE, &actions, nullptr, argv.data(), environ), 0);
+    posix_spawn_file_actions_destroy(&actions);
+  }
+  ~Process() {
+    if (!ended_) {
+      kill(pid_, SIGKILL);
+      waitpid(pid_, nullptr, 0);
+    }
+    std::fclose(output_);
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void signal(int number) const { kill(pid_, number); }
+
+  Ending wait() {
+    Ending ending;
+    int status = 0;
+    for (int i = 0; i < 1000 && !ended_; ++i) {
+      ended_ = waitpid(pid_, &status, WNOHANG) == pid_;
+      if (!ended_) {
+        ros::WallDuration(0.01).sleep();
+      }
+    }
+    EXPECT_TRUE(ended_) << "still runs after 10 s";
+    ending.exit_code = ended_ && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    std::rewind(output_);
+    for (int c = std::fgetc(output_); c != EOF; c = std::fgetc(output_)) {
+      ending.output.push_back(static_cast<char>(c));
+    }
+    return ending;
+  }
+
+ private:
+  pid_t pid_ = 0;
+  std::FILE* output_ = nullptr;
+  bool ended_ = false;
+};
+
+TEST(Node, StopsAtAWrongParameterAndSaysWhichAndWhy) {
+  const Ending ending = Process({"__name:=wrong_rate", "_marker_rate:=1000"}).wait();
+  EXPECT_EQ(ending.exit_code, 1);
+  EXPECT_NE(
+      ending.output.find("parameter /wrong_rate/marker_rate is 1000; it must be a number from "
+                         "0.1 to 100 [Hz]"),
+      std::string::npos)
+      << ending.output;
+}
+
+TEST(Node, StopsAtAWrongTopicInAList) {
+  ros::param::set("/wrong_topic/box_topics", std::vector<std::string>{"boxes", "/boxes"});
+  const Ending ending = Process({"__name:=wrong_topic"}).wait();
+  EXPECT_EQ(ending.exit_code, 1);
+  EXPECT_NE(ending.output.find("/wrong_topic/box_topics[1]"), std::string::npos) << ending.output;
+}
+
+TEST(Node, WarnsOfAParameterThatItDoesNotKnowAndEndsCleanly) {
+  for (const int number : {SIGINT, SIGTERM}) {
+    const std::string name = "ends_by_" + std::to_string(number);
+    Process process({"__name:=" + name, "_fixed_fram:=odom"});
+    ASSERT_TRUE(ros::service::waitForService("/" + name + "/get_scene", ros::Duration(10)));
+    process.signal(number);
+    const Ending ending = process.wait();
+    EXPECT_EQ(ending.exit_code, 0) << ending.output;
+    EXPECT_NE(ending.output.find("/fixed_fram is not known"), std::string::npos) << ending.output;
+    EXPECT_NE(ending.output.find("boxes of /boxes in frame map"), std::string::npos)
+        << ending.output;
+    EXPECT_NE(ending.output.find("/" + name + "/cast_ray"), std::string::npos) << ending.output;
+    EXPECT_FALSE(ros::service::exists("/" + name + "/get_scene", false)) << "still registered";
+  }
+}
+
+TEST(Node, IsLaunchedWithWhatIsGivenAndNothingElse) {
+  box_query::GetScene scene;
+  ASSERT_TRUE(ros::service::waitForService("/launched/get_scene", ros::Duration(20)));
+  bool answered = false;
+  for (int attempt = 0; attempt < 5 && !answered; ++attempt) {
+    answered = ros::service::call("/launched/get_scene", scene);
+  }
+  ASSERT_TRUE(answered);
+  EXPECT_EQ(scene.response.header.frame_id, "odom");
+  EXPECT_NE(scene.response.reason.find("/boxes"), std::string::npos) << scene.response.reason;
+  EXPECT_NE(scene.response.reason.find("/carts"), std::string::npos) << scene.response.reason;
+  std::vector<std::string> names;
+  ASSERT_TRUE(ros::param::getParamNames(names));
+  std::set<std::string> set;
+  for (const std::string& name : names) {
+    if (name.rfind("/launched/", 0) == 0) {
+      set.insert(name);
+    }
+  }
+  EXPECT_EQ(set, (std::set<std::string>{"/launched/box_topics", "/launched/fixed_frame"}));
+}
+
+TEST(Node, PrintsItsParameters) {
+  const Ending ending = Process({"--help"}).wait();
+  EXPECT_EQ(ending.exit_code, 0);
+  EXPECT_NE(ending.output.find("`~marker_rate`"), std::string::npos) << ending.output;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "test_node");
+  const ros::NodeHandle keeps_ros_alive;
+  return RUN_ALL_TESTS();
+}
