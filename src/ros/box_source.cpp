@@ -2,7 +2,6 @@
 #include "ros/box_source.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace box_query {
@@ -11,8 +10,10 @@ namespace {
 /// How far the norm of a quaternion may be from 1. Less is taken as it stands.
 constexpr double kNormTolerance = 1e-2;
 
-bool isFinite(const Quaternion& q) {
-  return q.coeffs().allFinite();
+bool isNearUnit(const Quaternion& q) {
+  const double squared = q.squaredNorm();
+  return squared >= (1.0 - kNormTolerance) * (1.0 - kNormTolerance) &&
+         squared <= (1.0 + kNormTolerance) * (1.0 + kNormTolerance);
 }
 
 }  // namespace
@@ -41,14 +42,14 @@ void BoxChange::add(std::int64_t box_id, const Vector3& center, const Quaternion
                     const Vector3& size) {
   if (!center.allFinite()) {
     reject(Rejection::kNotFinite, 1, "its position");
-  } else if (!isFinite(orientation)) {
+  } else if (!orientation.coeffs().allFinite()) {
     reject(Rejection::kNotFinite, 1, "its orientation");
   } else if (!size.allFinite()) {
     reject(Rejection::kNotFinite, 1, "its size");
   } else if ((size.array() < 0.0).any()) {
     reject(Rejection::kNegativeSize, 1, std::to_string(size.minCoeff()) + " m");
-  } else if (const double norm = orientation.norm(); !(std::abs(norm - 1.0) <= kNormTolerance)) {
-    reject(Rejection::kOrientation, 1, "its norm is " + std::to_string(norm));
+  } else if (!isNearUnit(orientation)) {
+    reject(Rejection::kOrientation, 1, "its norm is " + std::to_string(orientation.norm()));
   } else {
     boxes.push_back({box_id, {center, orientation, 0.5 * size}});
   }

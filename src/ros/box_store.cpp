@@ -34,6 +34,7 @@ Word BoxStore::hear(std::size_t topic_index, BoxChange&& change, const ros::Time
 
   Topic& topic = topics_.at(topic_index);
   Item& item = topic.items[word.change.ns][word.change.id];
+  last_item_ = &item;
   if (item.first_word == 0) {
     item.first_word = word.number;
   }
@@ -53,7 +54,7 @@ bool BoxStore::wants(const Word& word) const {
 void BoxStore::place(Word&& word, const std::string& locked_frame) {
   Topic& topic = topics_.at(word.topic);
   BoxChange& change = word.change;
-  Item& item = topic.items[change.ns][change.id];
+  Item& item = itemOf(word);
   if (word.number == item.latest_word) {
     setMissing(topic, item, 0, item.rejected);
   }
@@ -74,7 +75,7 @@ void BoxStore::giveUp(const Word& word, const std::string& problem) {
   if (!wants(word)) {
     return;
   }
-  Item& item = topic.items[word.change.ns][word.change.id];
+  Item& item = itemOf(word);
   if (word.number == item.latest_word) {
     item.problem = item.problem.empty() ? problem : item.problem;
     setMissing(topic, item, 0, item.rejected + item.waiting);
@@ -92,6 +93,7 @@ void BoxStore::remove(std::size_t topic_index, const std::string& ns, std::int64
     return;
   }
   forget(topic, item->second);
+  last_item_ = nullptr;
   items->second.erase(item);
   if (items->second.empty()) {
     topic.items.erase(items);
@@ -104,6 +106,7 @@ void BoxStore::clear(std::size_t topic_index) {
     ++boxes_revision_;
   }
   topic = Topic();
+  last_item_ = nullptr;
 }
 
 std::size_t BoxStore::expire(const ros::Time& now) {
@@ -113,6 +116,7 @@ std::size_t BoxStore::expire(const ros::Time& now) {
   }
   std::size_t expired = 0;
   next_expiry_ = kForever;
+  last_item_ = nullptr;
   for (Topic& topic : topics_) {
     for (auto items = topic.items.begin(); items != topic.items.end();) {
       for (auto next = items->second.begin(); next != items->second.end();) {
@@ -146,6 +150,12 @@ const Item* BoxStore::find(const Word& word) const {
   }
   const auto item = items->second.find(word.change.id);
   return item == items->second.end() ? nullptr : &item->second;
+}
+
+Item& BoxStore::itemOf(const Word& word) {
+  return last_item_ && word.number == last_word_
+             ? *last_item_
+             : topics_.at(word.topic).items[word.change.ns][word.change.id];
 }
 
 void BoxStore::setMissing(Topic& topic, Item& item, std::size_t waiting, std::size_t rejected) {

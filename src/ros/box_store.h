@@ -93,11 +93,14 @@ class BoxStore {
   };
 
   const Item* find(const Word& word) const;
+  Item& itemOf(const Word& word);
   static void setMissing(Topic& topic, Item& item, std::size_t waiting, std::size_t rejected);
   void forget(Topic& topic, Item& item);
 
   std::vector<Topic> topics_;
   std::uint64_t last_word_ = 0;
+  // Most words are placed as soon as they are heard.
+  Item* last_item_ = nullptr;  ///< of that word; null if it may be gone
   std::int64_t next_expiry_ = kForever;
   std::uint64_t boxes_revision_ = 0;
 };

@@ -233,9 +233,13 @@ Draft BoxTracker::draft() {
   draft.snapshot.stamp = newest_stamp_;
   draft.snapshot.topics.resize(topics_.size());
   used_frames_.clear();
+  draft.boxes.reserve(drafted_boxes_);
+  draft.snapshot.names.reserve(drafted_boxes_);
+  draft.snapshot.stamps.reserve(drafted_boxes_);
   for (const std::size_t topic : by_name_) {
     draftTopic(topic, draft);
   }
+  drafted_boxes_ = draft.boxes.size();
   for (auto frame = locked_.begin(); frame != locked_.end();) {
     frame = used_frames_.count(frame->first) > 0 ? std::next(frame) : locked_.erase(frame);
   }
@@ -256,7 +260,7 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
     const Item* item;
     const OrientedBox* box;
   };
-  std::vector<Row> rows;
+  std::vector<Row> rows;  // of one namespace
   for (const auto& [ns, items] : store_.items(index)) {
     rows.clear();
     for (const auto& entry : items) {

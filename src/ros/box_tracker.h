@@ -85,6 +85,7 @@ class BoxTracker {
   WaitingList waiting_;
   std::map<std::string, std::optional<FramePose>> locked_;  ///< latest poses of locked frames
   std::set<std::string> used_frames_;                       ///< of them, those in the draft
+  std::size_t drafted_boxes_ = 0;                           ///< in the last draft
   ros::Time newest_stamp_;
   std::uint64_t changes_ = 0;
   std::uint64_t moves_ = 0;  ///< of locked frames

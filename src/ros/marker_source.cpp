@@ -36,7 +36,7 @@ Shape readShape(WireReader& reader) {
   Shape shape;
   shape.position = reader.vector();
   shape.orientation = reader.quaternion();
-  if (shape.orientation.coeffs().isZero(0.0)) {
+  if (shape.orientation.coeffs() == Eigen::Vector4d::Zero()) {
     shape.orientation.setIdentity();
   }
   shape.scale = reader.vector();
@@ -46,7 +46,7 @@ Shape readShape(WireReader& reader) {
 /// Points are placed by the marker's pose; every box has its orientation and scale. An identity
 /// pose leaves them as they are, to the last bit.
 void addPoints(WireReader& reader, std::uint32_t points, const Shape& shape, BoxChange& change) {
-  const bool rotated = !shape.orientation.vec().isZero(0.0);
+  const bool rotated = shape.orientation.vec() != Vector3::Zero();
   const Eigen::Matrix3d rotation = shape.orientation.normalized().toRotationMatrix();
   change.boxes.reserve(points);
   for (std::uint32_t n = 0; n < points; ++n) {
@@ -63,10 +63,11 @@ bool isBadFrame(const std::string& frame) {
 /// Appends one marker. `boxes` counts those of the message so far.
 void readMarker(WireReader& reader, std::size_t max_boxes, std::size_t& boxes,
                 DecodedMessage& message) {
-  BoxChange change;
+  BoxChange& change = message.changes.emplace_back();
   reader.skip(sizeof(std::uint32_t));  // header.seq
   change.stamp = reader.time();
   const std::string_view frame = reader.string();
+  change.frame = stripSlash(frame);
   change.ns = reader.string();
   change.id = reader.number<std::int32_t>();
   const auto type = reader.number<std::int32_t>();
@@ -76,7 +77,6 @@ void readMarker(WireReader& reader, std::size_t max_boxes, std::size_t& boxes,
   const std::int64_t lifetime = reader.duration();
   change.frame_locked = reader.number<std::uint8_t>() != 0;
   change.lifetime = lifetime > kShortestLifetime ? lifetime : 0;
-  change.frame = stripSlash(frame);
 
   const std::uint32_t points = reader.count(kPointSize);
   const bool adds = action == Marker::ADD && (type == Marker::CUBE || type == Marker::CUBE_LIST);
@@ -114,9 +114,6 @@ void readMarker(WireReader& reader, std::size_t max_boxes, std::size_t& boxes,
     change.kind = BoxChange::Kind::kRemove;  // what is no box replaces what was one
     ++message.ignored;
   }
-  if (reader.ok()) {
-    message.changes.push_back(std::move(change));
-  }
 }
 
 }  // namespace
@@ -128,6 +125,7 @@ void decodeMarker(WireReader& reader, std::size_t max_boxes, DecodedMessage& mes
 
 void decodeMarkerArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message) {
   const std::uint32_t markers = reader.count(kMarkerSize);
+  message.changes.reserve(markers);
   std::size_t boxes = 0;
   for (std::uint32_t n = 0; n < markers && reader.ok() && message.problem.empty(); ++n) {
     readMarker(reader, max_boxes, boxes, message);

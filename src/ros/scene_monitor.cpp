@@ -36,8 +36,8 @@ using Clock = Bell::Clock;
 constexpr std::chrono::milliseconds kTick(50);
 /// Between looks at who publishes.
 constexpr std::chrono::seconds kPublisherCheck(1);
-/// [s] The system clock may be set back by this much; boxes then live that much longer.
-constexpr double kClockStep = 1.0;
+/// [ns] The system clock may be set back by this much; boxes then live that much longer.
+constexpr std::int64_t kClockStep = 1000000000;
 
 /// The parameters with names as the rest of the program compares them.
 Parameters resolved(const ros::NodeHandle& nh, Parameters parameters) {
@@ -204,7 +204,8 @@ void SceneMonitor::Impl::receive(std::size_t topic, AnyBoxMessage& message) {
 /// so far a thing of the future; tf2 itself would go on answering from it until its next message.
 void SceneMonitor::Impl::noticeTime() {
   const ros::Time time = ros::Time::now();
-  if (time.toSec() + (ros::Time::isSimTime() ? 0.0 : kClockStep) < now.toSec()) {
+  const std::int64_t back = static_cast<std::int64_t>(now.toNSec() - time.toNSec());
+  if (back > (ros::Time::isSimTime() ? 0 : kClockStep)) {
     ROS_WARN_STREAM("box_query: time went back from " << now << " to " << time
                                                       << "; boxes and transforms are forgotten");
     transforms.clear();

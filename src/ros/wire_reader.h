@@ -5,6 +5,7 @@
 
 #include <box_query/geometry.h>
 
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -76,18 +77,26 @@ class WireReader {
   }
 
   Vector3 vector() {
-    const double x = number<double>();
-    const double y = number<double>();
-    return {x, y, number<double>()};
+    const auto xyz = numbers<3>();
+    return {xyz[0], xyz[1], xyz[2]};
   }
 
   /// geometry_msgs/Quaternion: x, y, z, w.
   Quaternion quaternion() {
-    const Vector3 imaginary = vector();
-    return {number<double>(), imaginary.x(), imaginary.y(), imaginary.z()};
+    const auto xyzw = numbers<4>();
+    return {xyzw[3], xyzw[0], xyzw[1], xyzw[2]};
   }
 
  private:
+  template <std::size_t N>
+  std::array<double, N> numbers() {
+    std::array<double, N> values{};
+    if (const std::uint8_t* bytes = take(sizeof(values))) {
+      std::memcpy(values.data(), bytes, sizeof(values));
+    }
+    return values;
+  }
+
   const std::uint8_t* take(std::uint64_t size) {
     if (size > left_) {
       fail("a field of " + std::to_string(size) + " bytes is expected");
