@@ -4,10 +4,13 @@
 #include "geometry/distance_exact.h"
 #include "geometry/distance_points.h"
 #include "geometry/distance_query.h"
+#include "geometry/flat_distance.h"
 #include "geometry/prepared_box.h"
 
 #include <box_query/distance.h>
 #include <box_query/intersection.h>
+
+#include <utility>
 
 namespace box_query {
 namespace {
@@ -25,6 +28,10 @@ RoundedDistance nearestOf(const Segment& segment, const BoxType& box, const Near
     }
   } else if (testIntersection(segment, box)) {
     return {0.0, findIntersection(segment, box).t_enter};
+  }
+  if (const auto flat = flatDistance(segment, box)) {
+    return {exact::roundedSqrt(flat->squared, 1.0),
+            findIntersection(segment, flat->shadow).t_enter};
   }
   const exact::Nearest nearest = exact::nearest(exact::segmentAtBox(segment, box));
   return {exact::roundedSqrt(nearest.squared.num, nearest.squared.den),
@@ -56,6 +63,14 @@ SegmentDistance roundedDistance(const Segment& segment, const BoxType& box,
 }
 
 template <typename BoxType>
+exact::Ratio exactSquaredDistance(const Segment& segment, const BoxType& box) {
+  if (auto flat = flatDistance(segment, box)) {
+    return {std::move(flat->squared), 1.0};
+  }
+  return exact::nearest(exact::segmentAtBox(segment, box)).squared;
+}
+
+template <typename BoxType>
 bool isFarther(const Segment& segment, const BoxType& box, const NearestEstimate& estimate,
                double radius) {
   if (estimate.bounds.lower > radius) {
@@ -67,8 +82,8 @@ bool isFarther(const Segment& segment, const BoxType& box, const NearestEstimate
   if (radius == 0.0) {
     return !testIntersection(segment, box);
   }
-  const exact::Nearest nearest = exact::nearest(exact::segmentAtBox(segment, box));
-  return compare(nearest.squared, exact::Ratio{exact::Dyadic(radius) * radius, 1.0}) > 0;
+  return compare(exactSquaredDistance(segment, box),
+                 exact::Ratio{exact::Dyadic(radius) * radius, 1.0}) > 0;
 }
 
 template <typename BoxType>
@@ -88,6 +103,8 @@ double roundedFirstWithin(const Segment& segment, const BoxType& box,
   return exact::roundedDown(*exact::firstWithin(exact::segmentAtBox(segment, box), radius));
 }
 
+template exact::Ratio exactSquaredDistance(const Segment&, const AlignedBox&);
+template exact::Ratio exactSquaredDistance(const Segment&, const OrientedBox&);
 template SegmentDistance roundedDistance(const Segment&, const AlignedBox&, const NearestEstimate&);
 template SegmentDistance roundedDistance(const Segment&, const OrientedBox&,
                                          const NearestEstimate&);

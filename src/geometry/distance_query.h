@@ -3,6 +3,7 @@
 /// The stages of a distance query in order, for a box alone and for the boxes of a scene.
 #pragma once
 
+#include "geometry/distance_exact.h"
 #include "geometry/distance_filter.h"
 #include "geometry/distance_refine.h"
 
@@ -33,6 +34,10 @@ NearestEstimate estimateNearest(const Segment& segment, const SlabsType& box) {
 template <typename BoxType>
 SegmentDistance roundedDistance(const Segment& segment, const BoxType& box,
                                 const NearestEstimate& estimate);
+
+/// The squared distance, exactly: what decides where nothing else does.
+template <typename BoxType>
+exact::Ratio exactSquaredDistance(const Segment& segment, const BoxType& box);
 
 /// Whether the exact distance is greater than the radius.
 template <typename BoxType>

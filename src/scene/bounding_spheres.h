@@ -33,14 +33,14 @@ class SphereFilter {
  public:
   SphereFilter(const Segment& segment, const BoundingSpheres& spheres);
 
-  /// Whether the box is certainly farther away than `distance`; never true where a number is too
-  /// large to tell.
-  bool isBeyond(std::size_t box, double distance) const {
+  /// Whether the box is certainly farther than `distance` from the segment up to parameter `end`;
+  /// never true where a number is too large to tell.
+  bool isBeyond(std::size_t box, double distance, double end = 1.0) const {
     const double px = start_[0] - spheres_.x[box];
     const double py = start_[1] - spheres_.y[box];
     const double pz = start_[2] - spheres_.z[box];
     double t = -(px * direction_[0] + py * direction_[1] + pz * direction_[2]) * inverse_;
-    t = t < 1.0 ? t : 1.0;
+    t = t < end ? t : end;
     t = t > 0.0 ? t : 0.0;
     const double qx = px + t * direction_[0];
     const double qy = py + t * direction_[1];

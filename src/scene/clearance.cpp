@@ -2,6 +2,7 @@
 #include "geometry/distance_exact.h"
 #include "geometry/distance_query.h"
 #include "geometry/prepared_box.h"
+#include "geometry/solve.h"
 #include "scene/bounding_spheres.h"
 #include "scene/scene_impl.h"
 
@@ -9,6 +10,7 @@
 #include <box_query/intersection.h>
 #include <box_query/scene.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -48,7 +50,8 @@ struct Nearby {
 /// The exact squared distance, computed once.
 const exact::Ratio& squaredDistance(const Segment& segment, const Box& box, Nearby& nearby) {
   if (!nearby.squared) {
-    nearby.squared = exact::nearest(exact::segmentAtBox(segment, box)).squared;
+    nearby.squared =
+        std::visit([&](const auto& b) { return exactSquaredDistance(segment, b); }, box);
   }
   return *nearby.squared;
 }
@@ -131,12 +134,51 @@ Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const no
   return {nearest.box, d.distance, d.t, d.on_segment, d.on_box};
 }
 
+Blockage Scene::Impl::firstMet(const Segment& segment, const BoxMask* mask) const {
+  const DoubleComponent component = doubleComponent(segment);
+  const SphereFilter filter(segment, spheres);
+  std::size_t first = kNoBox;
+  Solution entry;
+  double bound = 1.0;
+  forEachBox(boxes.size(), mask, [&](std::size_t i) {
+    if (filter.isBeyond(i, 0.0, bound)) {
+      return true;
+    }
+    const Enclosure e = enclose<Segment>(component, prepared[i]);
+    if (e.isMiss() || e.enter_lo > bound) {
+      return true;
+    }
+    const Box& box = simplest[i];
+    Solution other = std::visit(
+        [&](const auto& b) { return solve(segment, component, b, box_query::prepared(b)); }, box);
+    if (other.num_points == 0) {
+      return true;
+    }
+    if (first == kNoBox || compareEntries(segment, box, other, simplest[first], entry) < 0) {
+      first = i;
+      entry = std::move(other);
+    }
+    bound = e.isHit() ? std::min(bound, e.enter_hi) : bound;
+    return true;
+  });
+  if (first == kNoBox) {
+    return {};
+  }
+  const double blocked_at =
+      std::visit([&](const auto& b) { return roundedParameter(segment, b, entry, End::kEnter); },
+                 simplest[first]);
+  return {true, first, blocked_at};
+}
+
 Blockage Scene::firstBlockage(const Segment& segment, double radius,
                               const BoxMask* mask) const noexcept {
+  if (radius == 0.0) {
+    return impl_->firstMet(segment, mask);
+  }
   const SphereFilter spheres(segment, impl_->spheres);
   Blocking first;
   forEachBox(size(), mask, [&](std::size_t i) {
-    if (spheres.isBeyond(i, radius)) {
+    if (spheres.isBeyond(i, radius, first.bounds.upper)) {
       return true;
     }
     const Box& box = impl_->simplest[i];

@@ -29,6 +29,9 @@ struct PreparedBox {
 struct Scene::Impl {
   explicit Impl(std::vector<Box> all);
 
+  /// firstBlockage() for radius 0.
+  Blockage firstMet(const Segment& segment, const BoxMask* mask) const;
+
   std::vector<Box> boxes;
   std::vector<PreparedBox> prepared;
   /// The boxes with those oriented ones that are aligned, exactly, in that form: what queries are

@@ -98,6 +98,26 @@ TEST(SceneClearance, WhatRoundsEquallyIsStillOrdered) {
   EXPECT_EQ(scene.firstBlockage(slanted, 1.0).box, 1U);
 }
 
+TEST(SceneClearance, APathOverAShelfTiesWithAllThatItPasses) {
+  // Tops at a height whose square no double holds, so that only exact numbers see the tie.
+  const double top = 0.7;
+  const double path = 1.1;
+  std::vector<Box> shelf;
+  for (int i = 0; i < 20; ++i) {
+    shelf.emplace_back(AlignedBox{{0.3 * i, -0.2, 0.1}, {0.3 * i + 0.2, 0.2, top}});
+  }
+  const Segment over{{-1.0, 0.1, path}, {9.0, 0.1, path}};
+  const Segment back{over.end, over.start};
+  for (const Segment& segment : {over, back}) {
+    const Clearance clearance = Scene(shelf).clearance(segment);
+    EXPECT_EQ(clearance.box, 0U);
+    EXPECT_EQ(clearance.distance, path - top);
+    EXPECT_EQ(clearance.on_box[2], top);
+  }
+  EXPECT_EQ(Scene(shelf).firstBlockage(over, 0.5).box, 0U);
+  EXPECT_EQ(Scene(shelf).firstBlockage(back, 0.5).box, 19U);
+}
+
 TEST(SceneClearance, AgreesWithEveryBoxAlone) {
   std::mt19937_64 engine(7);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
