@@ -151,7 +151,8 @@ bq_build() {
   if [ ! -e "$build_dir/Makefile" ]; then
     echo "Configuring in $build_dir" >&2
     bq_logged "$build_dir/configure.log" cmake -S "$bq_source_dir" -B "$build_dir" \
-      -G 'Unix Makefiles' -DPYTHON_EXECUTABLE=/usr/bin/python3 "$@" || return 1
+      -G 'Unix Makefiles' -DPYTHON_EXECUTABLE=/usr/bin/python3 \
+      -DCMAKE_INSTALL_PREFIX="$build_dir/install" "$@" || return 1
   fi
   echo "Building in $build_dir" >&2
   bq_logged "$build_dir/build.log" cmake --build "$build_dir" --target "${targets[@]}" \

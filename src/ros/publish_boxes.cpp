@@ -155,14 +155,14 @@ class MarkerWriter {
 
   /// A color for each class, in the order of first appearance; after the last one the first again.
   std_msgs::ColorRGBA colorOf(const std::string& box_class) {
-    static constexpr std::array<std::array<float, 3>, 8> kColors = {{{0.16F, 0.32F, 0.58F},
-                                                                     {0.93F, 0.53F, 0.18F},
-                                                                     {0.76F, 0.60F, 0.38F},
-                                                                     {0.30F, 0.62F, 0.42F},
-                                                                     {0.80F, 0.25F, 0.25F},
-                                                                     {0.55F, 0.57F, 0.60F},
-                                                                     {0.50F, 0.40F, 0.70F},
-                                                                     {0.88F, 0.78F, 0.30F}}};
+    static constexpr std::array<std::array<float, 3>, 8> kColors = {{{0.18F, 0.38F, 0.70F},
+                                                                     {0.90F, 0.47F, 0.13F},
+                                                                     {0.50F, 0.36F, 0.22F},
+                                                                     {0.80F, 0.66F, 0.46F},
+                                                                     {0.20F, 0.58F, 0.55F},
+                                                                     {0.55F, 0.58F, 0.62F},
+                                                                     {0.93F, 0.76F, 0.20F},
+                                                                     {0.75F, 0.25F, 0.28F}}};
     const std::size_t index = colors_.emplace(box_class, colors_.size()).first->second;
     const auto& rgb = kColors[index % kColors.size()];
     std_msgs::ColorRGBA color;
