@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/publishers.h"
 
-#include <XmlRpcException.h>
-#include <XmlRpcValue.h>
 #include <ros/master.h>
 #include <ros/this_node.h>
+#include <xmlrpcpp/XmlRpcException.h>
+#include <xmlrpcpp/XmlRpcValue.h>
 
 namespace box_query {
 

@@ -9,10 +9,10 @@
 #include <memory>
 #include <thread>
 
-#include <XmlRpcValue.h>
 #include <ros/init.h>
 #include <ros/master.h>
 #include <std_msgs/String.h>
+#include <xmlrpcpp/XmlRpcValue.h>
 
 namespace box_query {
 namespace {

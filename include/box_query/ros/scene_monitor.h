@@ -25,8 +25,10 @@ namespace box_query {
 struct BoxName {
   std::string topic;  ///< resolved
   std::string ns;
+  /// Of a CUBE, that of its marker. Box n of a CUBE_LIST has that of its marker + n * 2^32:
+  /// distinct, and stable while the list keeps its order. Deleting the marker deletes all of them.
   std::int64_t id = 0;
-  std::string label;  ///< not part of the identity
+  std::string label;  ///< not part of the identity; the text of a marker
 };
 
 /// What a snapshot knows of one of the topics.
@@ -88,6 +90,12 @@ struct MonitorStatistics {
 ///
 /// Callbacks run on threads of its own: its owner needs not spin. All functions may be called from
 /// any thread.
+///
+/// Boxes whose frame is the fixed frame are taken bit for bit; others are placed by tf at the stamp
+/// of their message (0: the latest), those with frame_locked anew in every snapshot. One leading
+/// slash of a frame is dropped, since tf2 refuses it. While what a topic says of a box is bad or
+/// waits for its transform, the box stays where it was, and the scene is incomplete. If the ROS
+/// clock goes back, all boxes and transforms are forgotten.
 class SceneMonitor {
  public:
   /// Topics are resolved in the namespace of `nh`.
