@@ -20,9 +20,8 @@ struct NearestEstimate {
 };
 
 template <typename SlabsType>
-NearestEstimate estimateNearest(const Segment& segment, const SlabsType& box) {
-  NearestEstimate e;
-  e.slabs = segmentSlabs(segment, box);
+inline NearestEstimate estimateNearest(const Segment& segment, const SlabsType& box) {
+  NearestEstimate e{segmentSlabs(segment, box)};
   if (e.slabs.isInRange()) {
     e.guess = guessNearest(e.slabs);
     e.bounds = distanceBounds(e.slabs, e.guess.excess);

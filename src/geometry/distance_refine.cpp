@@ -25,103 +25,135 @@ namespace bounds = exact::bounds;
 /// A sum of products, within 35u^2 of the sum of their absolute values.
 class DotSum {
  public:
+  explicit DotSum(const DoubleDouble& first) : hi_(first.hi), lo_(first.lo) {}
+  DotSum(const DoubleDouble& a, const DoubleDouble& b) {
+    const DoubleDouble product = exact::twoProd(a.hi, b.hi);
+    hi_ = product.hi;
+    lo_ = product.lo + (a.hi * b.lo + a.lo * b.hi);
+  }
   DotSum& add(const DoubleDouble& a, const DoubleDouble& b) {
     const DoubleDouble product = exact::twoProd(a.hi, b.hi);
-    const DoubleDouble sum = exact::twoSum(hi_, product.hi);
-    hi_ = sum.hi;
-    lo_ += sum.lo + (product.lo + (a.hi * b.lo + a.lo * b.hi));
+    addProduct(product, a.hi * b.lo + a.lo * b.hi);
+    return *this;
+  }
+  DotSum& add(const DoubleDouble& a, double b) {
+    addProduct(exact::twoProd(a.hi, b), a.lo * b);
     return *this;
   }
   DoubleDouble value() const { return exact::fastTwoSum(hi_, lo_); }
 
  private:
-  double hi_ = 0.0;
-  double lo_ = 0.0;
+  void addProduct(const DoubleDouble& product, double rest) {
+    const DoubleDouble sum = exact::twoSum(hi_, product.hi);
+    hi_ = sum.hi;
+    lo_ += sum.lo + (product.lo + rest);
+  }
+
+  double hi_;
+  double lo_;
 };
 
-/// One axis of the box: where the start is, from a face of it, and the direction.
-struct WideAxis {
-  DoubleDouble from_face;
-  DoubleDouble direction;
-};
-
+/// A segment seen from the faces of a box, stretched. `end` is the one of its ends that counts as
+/// the origin.
 template <typename BoxType>
 class WideFrame;
 
 template <>
 class WideFrame<AlignedBox> {
  public:
-  WideFrame(const Segment& segment, const AlignedBox& box) : segment_(segment), box_(box) {}
+  WideFrame(const Segment& segment, const Vector3& end, const AlignedBox& box)
+      : segment_(segment), end_(end), box_(box) {}
   DoubleDouble stretch() const { return {1.0, 0.0}; }
-  WideAxis axis(int i, bool positive) const {
-    return {exact::twoDiff(segment_.start[i], (positive ? box_.max : box_.min)[i]),
-            exact::twoDiff(segment_.end[i], segment_.start[i])};
+  DoubleDouble fromFace(int axis, bool positive) const {
+    return exact::twoDiff(end_[axis], (positive ? box_.max : box_.min)[axis]);
+  }
+  DoubleDouble direction(int axis) const {
+    return exact::twoDiff(segment_.end[axis], segment_.start[axis]);
   }
 
  private:
   const Segment& segment_;
+  const Vector3& end_;
   const AlignedBox& box_;
 };
 
 template <>
 class WideFrame<OrientedBox> {
  public:
-  WideFrame(const Segment& segment, const OrientedBox& box)
+  WideFrame(const Segment& segment, const Vector3& end, const OrientedBox& box)
       : box_(box), rows_(doubleDoubleRows(box.orientation)) {
     for (int j = 0; j < 3; ++j) {
-      start_[j] = exact::twoDiff(segment.start[j], box.center[j]);
+      offset_[j] = exact::twoDiff(end[j], box.center[j]);
       direction_[j] = exact::twoDiff(segment.end[j], segment.start[j]);
     }
   }
   DoubleDouble stretch() const { return rows_.n; }
-  WideAxis axis(int i, bool positive) const {
-    const DoubleDouble* row = rows_.axes[i];
-    const double extent = box_.half_extents[i];
-    return {DotSum()
-                .add(row[0], start_[0])
-                .add(row[1], start_[1])
-                .add(row[2], start_[2])
-                .add(rows_.n, {positive ? -extent : extent, 0.0})
-                .value(),
-            DotSum()
-                .add(row[0], direction_[0])
-                .add(row[1], direction_[1])
-                .add(row[2], direction_[2])
-                .value()};
+  DoubleDouble fromFace(int axis, bool positive) const {
+    const DoubleDouble* row = rows_.axes[axis];
+    const double extent = box_.half_extents[axis];
+    return DotSum(row[0], offset_[0])
+        .add(row[1], offset_[1])
+        .add(row[2], offset_[2])
+        .add(rows_.n, positive ? -extent : extent)
+        .value();
+  }
+  DoubleDouble direction(int axis) const {
+    const DoubleDouble* row = rows_.axes[axis];
+    return DotSum(row[0], direction_[0])
+        .add(row[1], direction_[1])
+        .add(row[2], direction_[2])
+        .value();
   }
 
  private:
   const OrientedBox& box_;
   Rows rows_;
-  DoubleDouble start_[3];
+  DoubleDouble offset_[3];
   DoubleDouble direction_[3];
 };
 
-/// f and its first two derivatives at t, stretched, on the piece that `sides` tells.
+/// f and its first two derivatives at a point, stretched, on the piece of the sides.
 struct WideValue {
-  DoubleDouble squared;  ///< f
-  DoubleDouble slope;    ///< f' / 2
-  double curvature;      ///< f'' / 2
-  double excess_sum;     ///< sum |ex_i|
-  double direction_sum;  ///< sum |v_i| over the same axes
+  DoubleDouble squared;        ///< f
+  DoubleDouble slope;          ///< f' / 2
+  double curvature = 0.0;      ///< f'' / 2
+  double excess_sum = 0.0;     ///< sum |ex_i|
+  double direction_sum = 0.0;  ///< sum |v_i| over the same axes
 };
 
+/// At the origin of the frame; f only.
 template <typename Frame>
-WideValue wideValue(const Frame& frame, double t, const Excess& sides) {
-  DotSum squared;
-  DotSum slope;
-  WideValue value{{}, {}, 0.0, 0.0, 0.0};
+WideValue valueAtOrigin(const Frame& frame, const Excess& sides) {
+  WideValue value;
+  DotSum squared{DoubleDouble()};
   for (int i = 0; i < 3; ++i) {
     const double side = sides[static_cast<std::size_t>(i)];
     if (side != 0.0) {
-      const WideAxis axis = frame.axis(i, side > 0.0);
-      const DoubleDouble excess =
-          DotSum().add(axis.from_face, {1.0, 0.0}).add(axis.direction, {t, 0.0}).value();
+      const DoubleDouble excess = frame.fromFace(i, side > 0.0);
       squared.add(excess, excess);
-      slope.add(axis.direction, excess);
-      value.curvature += axis.direction.hi * axis.direction.hi;
       value.excess_sum += std::fabs(excess.hi);
-      value.direction_sum += std::fabs(axis.direction.hi);
+    }
+  }
+  value.squared = squared.value();
+  return value;
+}
+
+/// At t, counted from the start, which is the origin.
+template <typename Frame>
+WideValue valueAt(const Frame& frame, double t, const Excess& sides) {
+  WideValue value;
+  DotSum squared{DoubleDouble()};
+  DotSum slope{DoubleDouble()};
+  for (int i = 0; i < 3; ++i) {
+    const double side = sides[static_cast<std::size_t>(i)];
+    if (side != 0.0) {
+      const DoubleDouble direction = frame.direction(i);
+      const DoubleDouble excess = DotSum(frame.fromFace(i, side > 0.0)).add(direction, t).value();
+      squared.add(excess, excess);
+      slope.add(direction, excess);
+      value.curvature += direction.hi * direction.hi;
+      value.excess_sum += std::fabs(excess.hi);
+      value.direction_sum += std::fabs(direction.hi);
     }
   }
   value.squared = squared.value();
@@ -167,41 +199,49 @@ template <typename BoxType>
 std::optional<RoundedDistance> refinedDistance(const Segment& segment, const BoxType& box,
                                                const SegmentSlabs& slabs,
                                                const NearestGuess& guess) {
-  const WideFrame<BoxType> frame(segment, box);
+  const double slope = dot(slabs.direction, guess.excess);
+  const bool at_start =
+      guess.t == 0.0 && (slope > slabs.slopeError() || segment.start == segment.end);
+  const bool at_end = guess.t == 1.0 && slope < -slabs.slopeError();
+  const bool inside = !at_start && !at_end;
+
+  const WideFrame<BoxType> frame(segment, at_end ? segment.end : segment.start, box);
   if (!isInRange(frame.stretch())) {
     return std::nullopt;
   }
-  const WideValue f = wideValue(frame, guess.t, guess.excess);
+  const WideValue f =
+      inside ? valueAt(frame, guess.t, guess.excess) : valueAtOrigin(frame, guess.excess);
   const double eta = wideError(slabs, frame.stretch());
-
-  const double slope = dot(slabs.direction, guess.excess);
-  const bool at_end =
-      (guess.t == 0.0 && (slope > slabs.slopeError() || segment.start == segment.end)) ||
-      (guess.t == 1.0 && slope < -slabs.slopeError());
   double change = 0.0;
   double curvature_error = 0.0;
   double t_error = 0.0;
-  if (!at_end) {
-    change = -f.slope.hi / f.curvature;
-    curvature_error = 16.0 * bounds::kUnit + 4.0 * eta / std::sqrt(f.curvature);
-    t_error = 4.0 * eta * (f.direction_sum + f.excess_sum) / f.curvature +
+  if (inside) {
+    const double inverse = 1.0 / f.curvature;
+    change = -f.slope.hi * inverse;
+    curvature_error = 16.0 * bounds::kUnit + 4.0 * eta * std::sqrt(inverse);
+    t_error = 4.0 * eta * (f.direction_sum + f.excess_sum) * inverse +
               std::fabs(change) * curvature_error;
   }
   if (!sidesAreCertain(slabs, guess.t, guess.excess, change)) {
     return std::nullopt;
   }
   const std::optional<double> t = rounded(exact::twoSum(guess.t, change), t_error);
-  if (!t || !(at_end || (*t > 0.0 && *t < 1.0))) {
+  if (!t || (inside && !(*t > 0.0 && *t < 1.0))) {
     return std::nullopt;
   }
 
   const double fall = change * change * f.curvature;
   const DoubleDouble squared = exact::fastTwoSum(f.squared.hi, f.squared.lo - fall);
-  const DoubleDouble distance = sqrt(squared) / frame.stretch();
-  const double relative_error =
-      (6.0 * eta * f.excess_sum + 4.0 * curvature_error * fall) / squared.hi +
-      2.0 * bounds::kOperation;
-  const std::optional<double> rounded_distance = rounded(distance, distance.hi * relative_error);
+  // One step of Newton's method for sqrt(squared) / n, with the rest in double-double.
+  const DoubleDouble n = frame.stretch();
+  const double root = std::sqrt(squared.hi) / n.hi;
+  const double factor = 0.5 / (root * n.hi * n.hi);
+  const DoubleDouble stretched = n * DoubleDouble{root, 0.0};
+  const DoubleDouble distance =
+      exact::fastTwoSum(root, (squared - stretched * stretched).hi * factor);
+  const double error = (12.0 * eta * f.excess_sum + 8.0 * curvature_error * fall) * factor +
+                       2.0 * bounds::kOperation * root;
+  const std::optional<double> rounded_distance = rounded(distance, error);
   if (!rounded_distance) {
     return std::nullopt;
   }
@@ -211,7 +251,7 @@ std::optional<RoundedDistance> refinedDistance(const Segment& segment, const Box
 template <typename BoxType>
 std::optional<double> refinedFirstWithin(const Segment& segment, const BoxType& box,
                                          const SegmentSlabs& slabs, double radius, double guess) {
-  const WideFrame<BoxType> frame(segment, box);
+  const WideFrame<BoxType> frame(segment, segment.start, box);
   const DoubleDouble n = frame.stretch();
   if (!isInRange(n)) {
     return std::nullopt;
@@ -229,8 +269,8 @@ std::optional<double> refinedFirstWithin(const Segment& segment, const BoxType& 
         !sidesAreCertain(slabs, t, sides, next - t)) {
       return std::nullopt;
     }
-    const WideValue at = wideValue(frame, t, sides);
-    const WideValue after = wideValue(frame, next, sides);
+    const WideValue at = valueAt(frame, t, sides);
+    const WideValue after = valueAt(frame, next, sides);
     const double error = 6.0 * eta * at.excess_sum + 2.0 * bounds::kOperation * limit.hi;
     const DoubleDouble rest = at.squared - limit;
     if (rest.hi > error && (after.squared - limit).hi < -error) {
