@@ -26,7 +26,7 @@ constexpr double kSlab = 64 * kUnit;
 /// Aligned slab in double: (bound - P) * (1 / D), of which every factor and the product is off by u
 /// (the direction of a segment by another u): 4u relative.
 constexpr double kAlignedSlab = 8 * kUnit;
-/// More than underflow can add to a parameter or to eta, with directions as below.
+/// More than underflow can add to eta.
 constexpr double kUnderflow = 0x1p-960;
 
 /// Double-double rows of the unnormalised frame (n = |q|^2, M = n R): n and M are within 12u^2 n, a
@@ -46,6 +46,9 @@ constexpr double kInflate = 1.0 + 0x1p-40;
 /// Magnitudes that the stages in double take; the exact stage takes the rest. No product of the
 /// filter overflows.
 constexpr double kLargest = 0x1p100;
+/// And the smallest ones but 0: differences of them are multiples of 2^-852, and the aligned slab
+/// never underflows.
+constexpr double kTiniest = 0x1p-800;
 /// Smallest non-zero component of a direction, and smallest largest one, that a filter takes.
 constexpr double kSmallestComponent = 0x1p-200;
 constexpr double kSmallestDirection = 0x1p-100;

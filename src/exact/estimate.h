@@ -19,11 +19,21 @@ struct Estimate {
   static Estimate unknown() { return {{}, std::numeric_limits<double>::infinity()}; }
 };
 
+inline bool isPowerOfTwo(double x) {
+  int exponent = 0;
+  return std::fabs(std::frexp(x, &exponent)) == 0.5;
+}
+
+/// num / den.
 inline Estimate quotient(const Certified& num, const Certified& den) {
   if (num.isExactZero()) {
     return Estimate();
   }
   const DoubleDouble value = num.value() / den.value();
+  if (num.error() == 0.0 && den.error() == 0.0 && den.value().lo == 0.0 &&
+      isPowerOfTwo(den.value().hi)) {
+    return {value, 0.0};  // exact, as ties must be
+  }
   // Relative errors of operands add up; beyond 2^-30 this is not tight enough to be of any use.
   const double relative =
       num.error() / std::fabs(num.value().hi) + den.error() / std::fabs(den.value().hi);
@@ -41,6 +51,7 @@ inline Estimate product(const Estimate& a, const DoubleDouble& b) {
 }
 
 /// Ziv's test: rounds to the nearest double if every number within the error rounds to the same.
+/// @pre the error is 0 or at least kOperation relative: the sums below then lose none of it
 inline bool round(const Estimate& x, double& rounded) {
   const double above = x.value.hi + (x.value.lo + x.error);
   const double below = x.value.hi + (x.value.lo - x.error);

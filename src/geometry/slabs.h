@@ -31,10 +31,12 @@ struct DoubleComponent {
 };
 
 inline bool isModerate(double x) {
-  return std::fabs(x) <= exact::bounds::kLargest;
+  const double size = std::fabs(x);
+  return (size >= exact::bounds::kTiniest && size <= exact::bounds::kLargest) || size == 0.0;
 }
 inline bool isCompact(double x) {
-  return (std::fabs(x) >= exact::bounds::kSmallest && isModerate(x)) || x == 0.0;
+  const double size = std::fabs(x);
+  return (size >= exact::bounds::kSmallest && size <= exact::bounds::kLargest) || size == 0.0;
 }
 inline bool isModerate(const Vector3& v) {
   return isModerate(v[0]) && isModerate(v[1]) && isModerate(v[2]);
@@ -109,12 +111,12 @@ struct Enclosure {
 
 inline double widenedDown(double t) {
   constexpr double kC = exact::bounds::kAlignedSlab;
-  return std::min(t * (1.0 - kC), t * (1.0 + kC)) - exact::bounds::kUnderflow;
+  return std::min(t * (1.0 - kC), t * (1.0 + kC));
 }
 
 inline double widenedUp(double t) {
   constexpr double kC = exact::bounds::kAlignedSlab;
-  return std::max(t * (1.0 - kC), t * (1.0 + kC)) + exact::bounds::kUnderflow;
+  return std::max(t * (1.0 - kC), t * (1.0 + kC));
 }
 
 /// Parameters at the planes of an aligned box. Where the direction is zero they are -inf and +inf
@@ -149,7 +151,14 @@ Enclosure enclose(const DoubleComponent& c, const AlignedSlabs& box) {
     near = std::max(near, nearPlane(c, box, i));  // (max(a, NaN) is a)
     far = std::min(far, farPlane(c, box, i));
   }
-  // Widening is monotone, so that once is enough.
+  // Widening is monotone, so that once is enough. A start makes near >= 0; far < 0 is a miss then,
+  // whichever way it is widened.
+  if constexpr (kHasStart<T>) {
+    constexpr double kC = exact::bounds::kAlignedSlab;
+    near = std::max(near, 0.0);
+    return clippedToOwn<T>(
+        {near * (1.0 - kC), near * (1.0 + kC), far * (1.0 - kC), far * (1.0 + kC)});
+  }
   return clippedToOwn<T>({widenedDown(near), widenedUp(near), widenedDown(far), widenedUp(far)});
 }
 

@@ -225,9 +225,33 @@ const exact::Clip& exactly(const T& linear, const BoxType& box, Solution& soluti
   return *solution.exactly;
 }
 
+/// Whether a component is parallel to an axis of the world.
+template <typename T>
+bool isAxisParallel(const T& linear) {
+  const bool zero[3] = {exactDirection(linear, 0).hi == 0.0, exactDirection(linear, 1).hi == 0.0,
+                        exactDirection(linear, 2).hi == 0.0};
+  return zero[0] + zero[1] + zero[2] == 2;
+}
+
 exact::Estimate estimate(const Solution& solution, End end) {
   const auto& t = end == End::kEnter ? solution.enter : solution.exit;
   return exact::quotient(t.num, t.den);
+}
+
+/// The distance in metres that belongs to an end.
+///
+/// Along an axis of the world the distance to a plane across it is num itself, which is exact for
+/// an aligned box and would often be a tie that Ziv's test cannot resolve.
+template <typename T>
+exact::Estimate estimatedRange(const T& linear, const Solution& solution, End end,
+                               const DoubleDouble& length) {
+  const auto& t = end == End::kEnter ? solution.enter : solution.exit;
+  const DoubleDouble den = t.den.value();
+  if (t.num.error() == 0.0 && t.den.error() == 0.0 && den.hi == length.hi && den.lo == length.lo &&
+      isAxisParallel(linear)) {
+    return {t.num.value(), 0.0};
+  }
+  return exact::product(estimate(solution, end), length);
 }
 
 const exact::Parameter& exactEnd(const exact::Clip& clip, End end) {
@@ -346,6 +370,11 @@ template <typename T>
 DoubleDouble directionLength(const T& linear) {
   const DoubleDouble d[3] = {exactDirection(linear, 0), exactDirection(linear, 1),
                              exactDirection(linear, 2)};
+  for (int i = 0; i < 3; ++i) {
+    if (d[(i + 1) % 3].hi == 0.0 && d[(i + 2) % 3].hi == 0.0) {
+      return d[i].hi < 0.0 ? -d[i] : d[i];
+    }
+  }
   return sqrt(dot(d, d));
 }
 
@@ -362,7 +391,7 @@ template <typename T, typename BoxType>
 double roundedRange(const T& linear, const BoxType& box, Solution& solution, End end,
                     const DoubleDouble& length) {
   double rounded = 0.0;
-  if (!solution.exactly && exact::round(exact::product(estimate(solution, end), length), rounded)) {
+  if (!solution.exactly && exact::round(estimatedRange(linear, solution, end, length), rounded)) {
     return rounded;
   }
   return exact::roundedRange(exactEnd(exactly(linear, box, solution), end), squaredLength(linear));
@@ -375,7 +404,7 @@ bool isEnteredWithin(const T& linear, const BoxType& box, Solution& solution, do
     return true;
   }
   if (!solution.exactly) {
-    const exact::Estimate range = exact::product(estimate(solution, End::kEnter), length);
+    const exact::Estimate range = estimatedRange(linear, solution, End::kEnter, length);
     const Certified excess = Certified(range.value, range.error) - Certified(max_range);
     if (excess.sign() != exact::kUnknownSign) {
       return excess.sign() <= 0;
@@ -387,23 +416,23 @@ bool isEnteredWithin(const T& linear, const BoxType& box, Solution& solution, do
 template <typename T, typename BoxType>
 Vector3 pointAt(const T& linear, const DoubleComponent& component, const BoxType& box,
                 Solution& solution, End end, double t) {
+  if (!component.moderate || !isModerate(box)) {
+    return exact::roundedPoint(exact::component(linear),
+                               exactEnd(exactly(linear, box, solution), end));
+  }
+  const FaceSet faces = end == End::kEnter ? solution.entered : solution.left;
   if constexpr (kHasStart<T>) {
     if (t == 0.0 && solution.started_inside) {
       return start(linear);
     }
   }
   if constexpr (kHasEnd<T>) {
-    if (t == 1.0) {
-      return linear.end;
+    if (t == 1.0) {  // perhaps only rounded to 1
+      return faces.empty() ? linear.end : movedInto(box, linear.end, faces);
     }
   }
-  if (!component.moderate || !isModerate(box)) {
-    return exact::roundedPoint(exact::component(linear),
-                               exactEnd(exactly(linear, box, solution), end));
-  }
   const Vector3 direction(component.direction[0], component.direction[1], component.direction[2]);
-  const Vector3 point = start(linear) + t * direction;
-  return movedInto(box, point, end == End::kEnter ? solution.entered : solution.left);
+  return movedInto(box, start(linear) + t * direction, faces);
 }
 
 #define BOX_QUERY_INSTANTIATE(T, BoxType, SlabsType)                                               \

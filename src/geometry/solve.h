@@ -41,6 +41,9 @@ bool meets(const T& linear, const DoubleComponent& component, const BoxType& box
 
 /// What of a component lies in a box: everything is decided, nothing is rounded.
 struct Solution {
+  // Not defaulted: value-initialisation would clear `exactly`, 2 kB, every time.
+  Solution() noexcept {}  // NOLINT(modernize-use-equals-default)
+
   int num_points = 0;
   bool started_inside = false;
   FaceSet entered;

@@ -29,8 +29,15 @@ Reach reachOf(const DoubleComponent& c, double max_range) {
           t * exact::bounds::kInflate + exact::bounds::kUnderflow};
 }
 
-Solution solveBox(const Ray& ray, const DoubleComponent& component, const Box& box) {
-  return std::visit([&](const auto& b) { return solve(ray, component, b, prepared(b)); }, box);
+Solution solveBox(const Ray& ray, const DoubleComponent& component, const Box& box,
+                  const PreparedBox& prepared) {
+  const bool moderate = prepared.kind != PreparedBox::Kind::kExactOnly;
+  if (const auto* aligned = std::get_if<AlignedBox>(&box)) {
+    return solve(ray, component, *aligned,
+                 Prepared<AlignedSlabs>{prepared.aligned, moderate, prepared.compact});
+  }
+  return solve(ray, component, *std::get_if<OrientedBox>(&box),
+               Prepared<OrientedSlabs>{prepared.oriented, moderate, prepared.compact});
 }
 
 /// A box that the ray certainly meets, entered at a parameter in [enter_lo, enter_hi].
@@ -44,8 +51,9 @@ struct Candidate {
 /// Finds the closest box. Boxes are offered in order of their index, so that a tie changes nothing.
 class Closest {
  public:
-  Closest(const Ray& ray, const DoubleComponent& component, const std::vector<Box>& boxes)
-      : ray_(ray), component_(component), boxes_(boxes) {}
+  Closest(const Ray& ray, const DoubleComponent& component, const std::vector<Box>& boxes,
+          const std::vector<PreparedBox>& prepared)
+      : ray_(ray), component_(component), boxes_(boxes), prepared_(prepared) {}
 
   std::size_t box() const { return best_.box; }
 
@@ -78,7 +86,7 @@ class Closest {
 
   Solution& solutionOf(Candidate& c) {
     if (!c.solution) {
-      c.solution = solveBox(ray_, component_, boxes_[c.box]);
+      c.solution = solveBox(ray_, component_, boxes_[c.box], prepared_[c.box]);
     }
     return *c.solution;
   }
@@ -86,6 +94,7 @@ class Closest {
   const Ray& ray_;
   const DoubleComponent& component_;
   const std::vector<Box>& boxes_;
+  const std::vector<PreparedBox>& prepared_;
   Candidate best_;
 };
 
@@ -143,7 +152,7 @@ Hit hitOf(const Ray& ray, const DoubleComponent& component, std::size_t index, c
 Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
   const DoubleComponent component = doubleComponent(ray);
   const Reach reach = reachOf(component, max_range);
-  Closest closest(ray, component, impl_->simplest);
+  Closest closest(ray, component, impl_->simplest, impl_->prepared);
   forEachBox(size(), mask, [&](std::size_t i) {
     const PreparedBox& box = impl_->prepared[i];
     const Enclosure e = enclose<Ray>(component, box);
@@ -188,7 +197,7 @@ bool Scene::castAny(const Ray& ray, double max_range, const BoxMask* mask) const
   forEachBox(size(), mask, [&](std::size_t i) {
     const Enclosure e = enclose<Ray>(component, impl_->prepared[i]);
     if (!e.isMiss() && e.enter_lo <= reach.outside) {
-      Solution solution = solveBox(ray, component, impl_->simplest[i]);
+      Solution solution = solveBox(ray, component, impl_->simplest[i], impl_->prepared[i]);
       any = solution.num_points > 0 &&
             std::visit(
                 [&](const auto& b) { return isEnteredWithin(ray, b, solution, max_range, length); },

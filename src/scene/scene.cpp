@@ -19,10 +19,14 @@ void BoxMask::set(std::size_t box, bool look) noexcept {
 }
 
 PreparedBox::PreparedBox(const AlignedBox& box)
-    : kind(isModerate(box) ? Kind::kAligned : Kind::kExactOnly), aligned(doubleSlabs(box)) {}
+    : kind(isModerate(box) ? Kind::kAligned : Kind::kExactOnly),
+      compact(isCompact(box)),
+      aligned(doubleSlabs(box)) {}
 
 PreparedBox::PreparedBox(const OrientedBox& box)
-    : kind(isModerate(box) ? Kind::kOriented : Kind::kExactOnly), oriented(doubleSlabs(box)) {}
+    : kind(isModerate(box) ? Kind::kOriented : Kind::kExactOnly),
+      compact(isCompact(box)),
+      oriented(doubleSlabs(box)) {}
 
 Scene::Impl::Impl(std::vector<Box> all) : boxes(std::move(all)), simplest(boxes), spheres(boxes) {
   prepared.reserve(boxes.size());

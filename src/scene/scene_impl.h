@@ -20,6 +20,7 @@ struct PreparedBox {
 
   /// kExactOnly: not moderate.
   Kind kind;
+  bool compact;
   union {
     AlignedSlabs aligned;
     OrientedSlabs oriented;
