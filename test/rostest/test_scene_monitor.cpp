@@ -161,7 +161,7 @@ TEST(SceneMonitor, EndsLifetimes) {
   ArrayTalker talker("lifetime");
   ASSERT_TRUE(talker.isHeard());
   Marker mortal = cube("map", 1, 1.0);
-  mortal.lifetime = ros::Duration(0.5);
+  mortal.lifetime = ros::Duration(2.0);
   talker.say(array({mortal, cube("map", 2, 2.0)}));
   ASSERT_TRUE(hasBoxes(monitor, 2));
   EXPECT_TRUE(holds(monitor, "2:2 "));
@@ -171,7 +171,7 @@ TEST(SceneMonitor, EndsLifetimes) {
 
 TEST(SceneMonitor, GoesStaleAndRecovers) {
   Parameters parameters = listenTo({"stale"});
-  parameters.box_topics[0].timeout = 0.3;
+  parameters.box_topics[0].timeout = 1.0;
   SceneMonitor monitor(ros::NodeHandle(), parameters);
   ArrayTalker talker("stale");
   ASSERT_TRUE(talker.isHeard());
@@ -352,8 +352,8 @@ TEST(SceneMonitor, TellsOfChangesAndOfNothingElse) {
   std::atomic<int> calls{0};
   std::atomic<std::size_t> seen{0};
   monitor.setChangedCallback([&] {
-    seen = monitor.currentScene()->scene.size();
     ++calls;
+    seen = monitor.currentScene()->scene.size();
   });
   talker.say(array({cube("map", 1, 1.0)}));
   ASSERT_TRUE(eventually([&] { return seen == 1U; }));
