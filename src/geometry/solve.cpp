@@ -2,6 +2,8 @@
 #include "geometry/solve.h"
 
 #include "exact/stage_counters.h"
+#include "geometry/moved_into.h"
+#include "geometry/planes.h"
 
 #include <array>
 #include <variant>
@@ -44,115 +46,6 @@ bool identify(const SlabTimes& t, Ends& ends) {
   return (from_start || (near > other_near && (!kHasStart<T> || near > 0.0))) &&
          (to_end || (far < other_far && (!kHasEnd<T> || far < 1.0)));
 }
-
-/// The direction of a component along axis i of the world, exactly.
-DoubleDouble exactDirection(const Segment& segment, int i) {
-  return exact::twoDiff(segment.end[i], segment.start[i]);
-}
-template <typename T>
-DoubleDouble exactDirection(const T& linear, int i) {
-  return {linear.direction[i], 0.0};
-}
-
-/// Within 22u^2 times the sum of the absolute values of the products: see bounds::kRow.
-DoubleDouble dot(const DoubleDouble* a, const DoubleDouble* b) {
-  const DoubleDouble p0 = exact::twoProd(a[0].hi, b[0].hi);
-  const DoubleDouble p1 = exact::twoProd(a[1].hi, b[1].hi);
-  const DoubleDouble p2 = exact::twoProd(a[2].hi, b[2].hi);
-  const double c0 = p0.lo + (a[0].hi * b[0].lo + a[0].lo * b[0].hi);
-  const double c1 = p1.lo + (a[1].hi * b[1].lo + a[1].lo * b[1].hi);
-  const double c2 = p2.lo + (a[2].hi * b[2].lo + a[2].lo * b[2].hi);
-  const DoubleDouble s = exact::twoSum(p0.hi, p1.hi);
-  const DoubleDouble r = exact::twoSum(s.hi, p2.hi);
-  return exact::fastTwoSum(r.hi, (s.lo + r.lo) + ((c0 + c1) + c2));
-}
-
-/// Parameters at the planes of one kind of box, in double-double.
-template <typename T, typename BoxType>
-class Planes;
-
-template <typename T>
-class Planes<T, AlignedBox> {
- public:
-  Planes(const T& linear, const DoubleComponent& component, const AlignedBox& box, const Rows*)
-      : linear_(linear), component_(component), box_(box) {}
-
-  bool isPositive(int axis) const { return !component_.negative[axis]; }
-
-  exact::BasicParameter<Certified> at(int axis, bool max_plane) const {
-    const double plane = max_plane ? box_.max[axis] : box_.min[axis];
-    const Certified num(exact::twoDiff(plane, component_.origin[axis]), 0.0);
-    const Certified den(exactDirection(linear_, axis), 0.0);
-    return isPositive(axis) ? exact::BasicParameter<Certified>{num, den}
-                            : exact::BasicParameter<Certified>{-num, -den};
-  }
-
- private:
-  const T& linear_;
-  const DoubleComponent& component_;
-  const AlignedBox& box_;
-};
-
-template <typename T>
-class Planes<T, OrientedBox> {
- public:
-  Planes(const T& linear, const DoubleComponent& component, const OrientedBox& box,
-         const Rows* rows)
-      : box_(box), rows_(rows) {
-    if (rows_ == nullptr) {
-      own_rows_ = doubleDoubleRows(box.orientation);
-      rows_ = &own_rows_;
-    }
-    for (int i = 0; i < 3; ++i) {
-      offset_[i] = exact::twoDiff(component.origin[i], box.center[i]);
-      direction_[i] = exactDirection(linear, i);
-    }
-    const double n = rows_->n.hi;
-    offset_error_ = exact::bounds::kRow * n *
-                    (std::fabs(offset_[0].hi) + std::fabs(offset_[1].hi) +
-                     std::fabs(offset_[2].hi) + box.half_extents.sum());
-    direction_error_ =
-        exact::bounds::kRow * n *
-        (std::fabs(direction_[0].hi) + std::fabs(direction_[1].hi) + std::fabs(direction_[2].hi));
-  }
-
-  bool isPositive(int axis) { return row(axis).direction.hi > 0.0; }
-
-  exact::BasicParameter<Certified> at(int axis, bool max_plane) {
-    const Row& r = row(axis);
-    const DoubleDouble num = (max_plane ? r.extent : -r.extent) - r.position;
-    const bool positive = r.direction.hi > 0.0;
-    return {Certified(positive ? num : -num, offset_error_),
-            Certified(positive ? r.direction : -r.direction, direction_error_)};
-  }
-
- private:
-  struct Row {
-    int axis = -1;
-    DoubleDouble position;
-    DoubleDouble direction;
-    DoubleDouble extent;
-  };
-
-  const Row& row(int axis) {
-    if (row_.axis != axis) {
-      row_.axis = axis;
-      row_.position = dot(rows_->axes[axis], offset_);
-      row_.direction = dot(rows_->axes[axis], direction_);
-      row_.extent = rows_->n * DoubleDouble{box_.half_extents[axis], 0.0};
-    }
-    return row_;
-  }
-
-  const OrientedBox& box_;
-  const Rows* rows_;
-  Rows own_rows_;
-  DoubleDouble offset_[3];
-  DoubleDouble direction_[3];
-  double offset_error_;
-  double direction_error_;
-  Row row_;
-};
 
 template <typename T, typename BoxType>
 Solution solveAtAxes(const T& linear, const DoubleComponent& component, const BoxType& box,
@@ -271,38 +164,6 @@ const Vector3& start(const T& linear) {
   } else {
     return linear.origin;
   }
-}
-
-/// A point that rounding has left near the box, clamped to it, and exactly onto the given faces.
-Vector3 movedInto(const AlignedBox& box, const Vector3& point, FaceSet faces) {
-  Vector3 inside;
-  for (int i = 0; i < 3; ++i) {
-    inside[i] = std::min(std::max(point[i], box.min[i]), box.max[i]);
-    inside[i] = faces.contains(i, false) ? box.min[i] : inside[i];
-    inside[i] = faces.contains(i, true) ? box.max[i] : inside[i];
-  }
-  return inside;
-}
-
-/// The same in the frame of the box. Only the correction, which is tiny, is turned back into the
-/// world, so that no more than the point's own rounding is lost.
-Vector3 movedInto(const OrientedBox& box, const Vector3& point, FaceSet faces) {
-  const Axes axes = boxAxes(box.orientation);
-  const Vector3 v = point - box.center;
-  Vector3 inside = point;
-  for (int i = 0; i < 3; ++i) {
-    const double* a = axes.of[i];
-    const double extent = box.half_extents[i];
-    const double y = (a[0] * v[0] + a[1] * v[1]) + a[2] * v[2];
-    double target = std::min(std::max(y, -extent), extent);
-    target = faces.contains(i, false) ? -extent : target;
-    target = faces.contains(i, true) ? extent : target;
-    const double correction = target - y;
-    for (int j = 0; j < 3; ++j) {
-      inside[j] += correction * a[j];
-    }
-  }
-  return inside;
 }
 
 }  // namespace
