@@ -195,9 +195,11 @@ def main():
     parser.add_argument('--verbose', action='store_true', help='print also what the tests print')
     parser.add_argument('--allow-skips', default='', metavar='REGEX',
                         help='a skip counts as failed unless this matches its name and reason')
+    parser.add_argument('--without-scripts', action='store_true', help='only programs that were built here')
     parser.add_argument('names', nargs='*', metavar='NAME', help='only tests whose name contains NAME')
     arguments = parser.parse_args()
-    tests = read_list(os.path.join(arguments.build_dir, 'tests.txt'))
+    tests = [test for test in read_list(os.path.join(arguments.build_dir, 'tests.txt'))
+             if test.kind != 'script' or not arguments.without_scripts]
     for name in arguments.names:
         if not any(name in test.name for test in tests):
             parser.error('no test is named like %s; there are %s' % (name, ' '.join(test.name for test in tests)))
