@@ -12,6 +12,33 @@
 
 namespace box_query::test {
 
+/// Bytes that are sent as they are, under the checksum of CastRays.
+struct RawRequest {
+  std::vector<std::uint8_t> bytes;
+};
+
+}  // namespace box_query::test
+
+template <>
+struct ros::service_traits::MD5Sum<box_query::test::RawRequest> {
+  static const char* value() { return ros::service_traits::md5sum<box_query::CastRays>(); }
+  static const char* value(const box_query::test::RawRequest& /*request*/) { return value(); }
+};
+
+template <>
+struct ros::serialization::Serializer<box_query::test::RawRequest> {
+  template <class Stream>
+  static void write(Stream& stream, const box_query::test::RawRequest& request) {
+    const auto size = static_cast<std::uint32_t>(request.bytes.size());
+    std::copy_n(request.bytes.begin(), size, stream.advance(size));
+  }
+  static std::uint32_t serializedLength(const box_query::test::RawRequest& request) {
+    return static_cast<std::uint32_t>(request.bytes.size());
+  }
+};
+
+namespace box_query::test {
+
 /// Calls a service of the node; retries where the connection fails, as roscpp's clients do now and
 /// then, and nothing else.
 template <class Service>

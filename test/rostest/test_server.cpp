@@ -294,6 +294,39 @@ TEST_F(Server, RefusesBadRequestsWithASentence) {
   EXPECT_EQ(odd.first_blocked, -1);
 }
 
+TEST_F(Server, RefusesBytesThatAreNoRequestAtOnce) {
+  CastRaysRequest request;
+  request.header.frame_id = "map";
+  const auto answered = [](std::vector<std::uint8_t> bytes) {
+    RawRequest raw = {std::move(bytes)};
+    CastRaysResponse response;
+    bool called = false;
+    for (int attempt = 0; attempt < 5 && !called; ++attempt) {
+      called = ros::service::call("/box_query/cast_rays", raw, response);
+    }
+    EXPECT_TRUE(called);
+    return response;
+  };
+  EXPECT_TRUE(answered(bytesOf(request)).success);
+  const ros::WallTime start = ros::WallTime::now();
+  std::vector<std::uint8_t> huge = bytesOf(request);
+  // The count of origins, after the header and the mode: 4e9 of them would be 96 GB.
+  const std::uint32_t count = 4000000000U;
+  std::copy_n(reinterpret_cast<const std::uint8_t*>(&count), 4, &huge[4 + 8 + 4 + 3 + 1]);
+  const CastRaysResponse too_many = answered(huge);
+  EXPECT_FALSE(too_many.success);
+  EXPECT_NE(too_many.message.find("an array of 4000000000 elements"), std::string::npos)
+      << too_many.message;
+  std::vector<std::uint8_t> cut = bytesOf(request);
+  cut.resize(cut.size() / 2);
+  EXPECT_NE(answered(cut).message.find("malformed request"), std::string::npos);
+  std::vector<std::uint8_t> longer = bytesOf(request);
+  longer.resize(longer.size() + 3);
+  EXPECT_NE(answered(longer).message.find("3 bytes are left over"), std::string::npos);
+  EXPECT_NE(answered({}).message.find("malformed request"), std::string::npos);
+  EXPECT_LT((ros::WallTime::now() - start).toSec(), 10.0);
+}
+
 TEST_F(Server, AnswersSeveralClientsAtOnce) {
   CastRayRequest request = ray("map", point(-30, 0, 0), vector(1, 0, 0));
   const CastRayResponse expected = cast(request);
