@@ -12,8 +12,8 @@
 
 namespace box_query {
 
-/// Whether the component and the closed solid have a point in common. Method of separating axes
-/// (paper, section 2).
+/// Whether the component and the closed solid have a point in common: the separating axes of the
+/// paper's section 2, in the box's own frame where they are the overlap of three slabs.
 /// @pre isValid(component) && isValid(box)
 bool testIntersection(const Line& line, const AlignedBox& box) noexcept;
 bool testIntersection(const Ray& ray, const AlignedBox& box) noexcept;
