@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The stress suite against a core that is spoilt on purpose: it must find wrong answers.
+///
+/// A derived bound is larger than the largest error that ever occurs. The factors below are where
+/// the suite was first seen to find wrong answers, so they also say how much slack there is.
+#include "exact/bounds.h"
+#include "exact/distance_bounds.h"
+#include "stress/families.h"
+#include "stress/mutation.h"
+#include "stress/run_families.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace box_query::stress {
+namespace {
+
+namespace bounds = exact::bounds;
+
+constexpr std::uint64_t kSeed = 5;
+
+using Run = Tally (*)(std::size_t, std::uint64_t, std::uint64_t, int);
+
+std::uint64_t wrongAnswers(Run run, const std::vector<std::string>& names, const char* name,
+                           std::uint64_t count) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  EXPECT_NE(found, names.end()) << name;
+  return run(static_cast<std::size_t>(found - names.begin()), kSeed, count, 2).wrong;
+}
+
+std::uint64_t wrongPairs(const char* family, std::uint64_t count) {
+  return wrongAnswers(runIntersections, familyNames(), family, count);
+}
+
+std::uint64_t wrongDistances(const char* family, std::uint64_t count) {
+  return wrongAnswers(runDistances, familyNames(), family, count);
+}
+
+/// Gives a number another value as long as it lives.
+template <typename T>
+class Spoilt {
+ public:
+  Spoilt(T& variable, T value) : variable_(variable), good_(variable) { variable = value; }
+  ~Spoilt() { variable_ = good_; }
+  Spoilt(const Spoilt&) = delete;
+  Spoilt& operator=(const Spoilt&) = delete;
+
+ private:
+  T& variable_;
+  T good_;
+};
+
+TEST(Mutations, WithoutAnyNothingIsWrong) {
+  EXPECT_EQ(wrongPairs("grazing", 5000), 0U);
+  EXPECT_EQ(wrongPairs("exact_touch", 5000), 0U);
+  EXPECT_EQ(wrongDistances("grazing", 2000), 0U);
+}
+
+TEST(Mutations, TouchesThatMissAreNoticed) {
+  const Spoilt<bool> spoilt(mutation.touching_misses, true);
+  EXPECT_GT(wrongPairs("exact_touch", 1000), 0U);
+}
+
+TEST(Mutations, TiesThatNameOneFaceAreNoticed) {
+  const Spoilt<bool> spoilt(mutation.ties_name_one_face, true);
+  EXPECT_GT(wrongPairs("exact_touch", 1000), 0U);
+}
+
+TEST(Mutations, ASkippedExactStageIsNoticed) {
+  // A point box on a line: three planes at one parameter, in numbers too long for double-double.
+  const Spoilt<bool> spoilt(mutation.skip_exact_stage, true);
+  EXPECT_GT(wrongPairs("extents", 1000), 0U);
+}
+
+TEST(Mutations, SkippedSlowStagesAreNoticed) {
+  const Spoilt<bool> spoilt(mutation.skip_slow_stages, true);
+  EXPECT_GT(wrongPairs("grazing", 1000), 0U);
+}
+
+TEST(Mutations, ASkippedRoundingTestIsNoticed) {
+  const Spoilt<bool> spoilt(mutation.skip_rounding_test, true);
+  EXPECT_GT(wrongPairs("axis_parallel", 4000), 0U);
+}
+
+TEST(Mutations, ShrunkBoundsOfOrientedSlabsAreNoticed) {
+  const Spoilt<double> spoilt(bounds::kSlab, bounds::kSlab / 64);  // first seen at 1/32
+  EXPECT_GT(wrongPairs("far_parallel", 3000), 0U);
+}
+
+TEST(Mutations, ShrunkBoundsOfAlignedSlabsAreNoticed) {
+  const Spoilt<double> spoilt(bounds::kAlignedSlab, bounds::kAlignedSlab / 8);  // first seen at 1/4
+  EXPECT_GT(wrongPairs("grazing", 3000), 0U);
+}
+
+TEST(Mutations, ShrunkBoundsOfDoubleDoubleRowsAreNoticed) {
+  const Spoilt<double> spoilt(bounds::kRow, bounds::kRow / 1024);  // first seen at 1/256
+  EXPECT_GT(wrongPairs("origin_on_box", 4000), 0U);
+}
+
+TEST(Mutations, ShrunkBoundsOfDoubleDoubleOperationsAreNoticed) {
+  const Spoilt<double> spoilt(bounds::kOperation, bounds::kOperation / 256);  // first seen at 1/64
+  EXPECT_GT(wrongPairs("axis_parallel", 4000), 0U);
+}
+
+TEST(Mutations, ShrunkBoundsOfDistancesAreNoticed) {
+  const Spoilt<double> spoilt(bounds::kDistance, bounds::kDistance / 256);  // first seen at 1/128
+  EXPECT_GT(wrongDistances("rounded_axis", 2000), 0U);
+}
+
+}  // namespace
+}  // namespace box_query::stress
