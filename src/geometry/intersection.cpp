@@ -9,7 +9,7 @@ namespace {
 
 template <typename T>
 bool test(const T& linear, const AlignedBox& box) {
-  return meets(linear, doubleComponent(linear), box, prepared(box));
+  return meets(linear, box, prepared(box));
 }
 
 template <typename T>
@@ -17,7 +17,7 @@ bool test(const T& linear, const OrientedBox& box) {
   if (const auto form = alignedForm(box)) {
     return test(linear, form->box);
   }
-  return meets(linear, doubleComponent(linear), box, prepared(box));
+  return meets(linear, box, prepared(box));
 }
 
 template <typename T, typename BoxType>

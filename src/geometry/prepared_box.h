@@ -41,7 +41,9 @@ inline OrientedSlabs doubleSlabs(const OrientedBox& box) {
     slabs.center[i] = box.center[i];
     slabs.half_extents[i] = box.half_extents[i];
   }
-  slabs.extent_sum = slabs.half_extents[0] + slabs.half_extents[1] + slabs.half_extents[2];
+  slabs.padded_extent_sum =
+      ((slabs.half_extents[0] + slabs.half_extents[1]) + slabs.half_extents[2]) +
+      exact::bounds::kUnderflow / exact::bounds::kSlab;
   return slabs;
 }
 

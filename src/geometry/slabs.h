@@ -86,7 +86,7 @@ struct OrientedSlabs {
   double axes[3][3];
   double center[3];
   double half_extents[3];
-  double extent_sum;
+  double padded_extent_sum;  ///< with kUnderflow / kSlab, so that eta has kUnderflow in it
 };
 
 /// Enclosures of where a component enters and leaves each slab: near_lo <= near <= near_hi. Those
@@ -178,12 +178,66 @@ inline SlabTimes slabTimes(const DoubleComponent& c, const AlignedSlabs& box) {
   return t;
 }
 
+/// `times` the eta of bounds::kSlab, where the component starts at the center + v.
+template <int times = 1>
+inline double slabError(const double* v, const OrientedSlabs& box) {
+  return times * exact::bounds::kSlab *
+         ((std::fabs(v[0]) + std::fabs(v[1])) + (std::fabs(v[2]) + box.padded_extent_sum));
+}
+
+struct Verdict {
+  bool certain;
+  bool hit;  ///< if it is certain
+};
+
+/// Whether a component meets an oriented box, in little more than the plain slab test.
+///
+/// Its parameters of entry and exit are those of slabTimes without eta, which would move each by
+/// eta |r_i|, r = 1 / d. So where the gap between the last entry and the first exit is more than
+/// 2 eta (|r_0| + |r_1| + |r_2|), enclose() would decide the same.
+///
+/// Nothing is assumed of the magnitudes: where bound <= 2^50, |r_i| is below 2^1010 (eta is at
+/// least kUnderflow), so that no d_i is 0 or short of bits, and no parameter overflows; where
+/// |r_i| >= 2^-100, no d_i overflows, and what underflow adds is in eta.
+template <typename T>
+inline Verdict quickVerdict(const T& linear, const OrientedSlabs& box) {
+  double v[3];
+  double direction[3];
+  for (int i = 0; i < 3; ++i) {
+    if constexpr (kHasEnd<T>) {
+      v[i] = linear.start[i] - box.center[i];
+      direction[i] = linear.end[i] - linear.start[i];
+    } else {
+      v[i] = linear.origin[i] - box.center[i];
+      direction[i] = linear.direction[i];
+    }
+  }
+  double minus_enter = kHasStart<T> ? 0.0 : std::numeric_limits<double>::infinity();
+  double exit = kHasEnd<T> ? 1.0 : std::numeric_limits<double>::infinity();
+  double r_abs[3];
+  for (int i = 0; i < 3; ++i) {
+    const double* axis = box.axes[i];
+    const double y = axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2];
+    const double d = axis[0] * direction[0] + axis[1] * direction[1] + axis[2] * direction[2];
+    const double r = 1.0 / d;
+    r_abs[i] = std::fabs(r);
+    const double minus_middle = y * r;
+    const double half = box.half_extents[i] * r_abs[i];
+    minus_enter = std::min(minus_enter, half + minus_middle);
+    exit = std::min(exit, half - minus_middle);
+  }
+  const double bound = slabError<2>(v, box) * ((r_abs[0] + r_abs[1]) + r_abs[2]);
+  const double gap = exit + minus_enter;
+  const bool certain =
+      std::fabs(gap) > bound && bound <= 0x1p50 &&
+      std::min(std::min(r_abs[0], r_abs[1]), r_abs[2]) >= 1.0 / exact::bounds::kLargest;
+  return {certain, gap > 0.0};
+}
+
 inline SlabTimes slabTimes(const DoubleComponent& c, const OrientedSlabs& box) {
   const double v[3] = {c.origin[0] - box.center[0], c.origin[1] - box.center[1],
                        c.origin[2] - box.center[2]};
-  const double eta = exact::bounds::kSlab * ((std::fabs(v[0]) + std::fabs(v[1])) +
-                                             (std::fabs(v[2]) + box.extent_sum)) +
-                     exact::bounds::kUnderflow;
+  const double eta = slabError(v, box);
   SlabTimes t;
   for (int i = 0; i < 3; ++i) {
     const double* axis = box.axes[i];

@@ -166,8 +166,7 @@ const Vector3& start(const T& linear) {
   }
 }
 
-}  // namespace
-
+/// Whether the component meets the box, where the filter could not tell.
 template <typename T, typename BoxType>
 bool meetsSlowly(const T& linear, const DoubleComponent& component, const BoxType& box) {
   if (component.compact && isCompact(box)) {
@@ -178,6 +177,26 @@ bool meetsSlowly(const T& linear, const DoubleComponent& component, const BoxTyp
   }
   ++exact::stageCounters().exact_decisions;
   return exactClip(linear, box).num_points > 0;
+}
+
+}  // namespace
+
+template <typename T, typename BoxType, typename SlabsType>
+bool meetsByStages(const T& linear, const BoxType& box, const Prepared<SlabsType>& prepared) {
+  const DoubleComponent component = doubleComponent(linear);
+  if (component.moderate && prepared.moderate) {
+    const Enclosure e = enclose<T>(component, prepared.slabs);
+    if (e.isHit()) {
+      return true;
+    }
+    if (e.isMiss()) {
+      return false;
+    }
+    if (crossesThinSlab<T>(slabTimes(component, prepared.slabs))) {
+      return true;
+    }
+  }
+  return meetsSlowly(linear, component, box);
 }
 
 template <typename T, typename BoxType, typename SlabsType>
@@ -297,7 +316,7 @@ Vector3 pointAt(const T& linear, const DoubleComponent& component, const BoxType
 }
 
 #define BOX_QUERY_INSTANTIATE(T, BoxType, SlabsType)                                               \
-  template bool meetsSlowly(const T&, const DoubleComponent&, const BoxType&);                     \
+  template bool meetsByStages(const T&, const BoxType&, const Prepared<SlabsType>&);               \
   template Solution solve(const T&, const DoubleComponent&, const BoxType&,                        \
                           const Prepared<SlabsType>&, const Rows*);                                \
   template double roundedParameter(const T&, const BoxType&, Solution&, End);                      \

@@ -16,27 +16,20 @@
 
 namespace box_query {
 
-/// Whether the component meets the box, where the filter could not tell.
-template <typename T, typename BoxType>
-bool meetsSlowly(const T& linear, const DoubleComponent& component, const BoxType& box);
+/// Whether the component meets the box, through all stages.
+template <typename T, typename BoxType, typename SlabsType>
+bool meetsByStages(const T& linear, const BoxType& box, const Prepared<SlabsType>& prepared);
 
 /// Whether the component meets the box.
-template <typename T, typename BoxType, typename SlabsType>
-bool meets(const T& linear, const DoubleComponent& component, const BoxType& box,
-           const Prepared<SlabsType>& prepared) {
-  if (component.moderate && prepared.moderate) {
-    const Enclosure e = enclose<T>(component, prepared.slabs);
-    if (e.isHit()) {
-      return true;
-    }
-    if (e.isMiss()) {
-      return false;
-    }
-    if (crossesThinSlab<T>(slabTimes(component, prepared.slabs))) {
-      return true;
-    }
-  }
-  return meetsSlowly(linear, component, box);
+template <typename T>
+inline bool meets(const T& linear, const AlignedBox& box, const Prepared<AlignedSlabs>& prepared) {
+  return meetsByStages(linear, box, prepared);
+}
+template <typename T>
+inline bool meets(const T& linear, const OrientedBox& box,
+                  const Prepared<OrientedSlabs>& prepared) {
+  const Verdict quick = quickVerdict(linear, prepared.slabs);
+  return quick.certain ? quick.hit : meetsByStages(linear, box, prepared);
 }
 
 /// What of a component lies in a box: everything is decided, nothing is rounded.

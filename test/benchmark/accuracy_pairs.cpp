@@ -25,9 +25,9 @@ struct Contender {
 template <typename Method, typename Component>
 Contender<Component> contender(const char* prepared) {
   const auto bind = [](const Pairs<Component>& pairs) -> Pass {
-    return [&pairs, boxes = prepareAll<Method>(pairs.boxes)] {
-      return passOver<Method>(pairs.components, boxes);
-    };
+    using Boxes = std::vector<typename Method::Prepared>;
+    const auto boxes = std::make_shared<const Boxes>(prepareAll<Method>(pairs.boxes));
+    return [&pairs, boxes] { return passOver<Method>(pairs.components, *boxes); };
   };
   const auto answers = [](const Pairs<Component>& pairs) {
     std::vector<Answer> result;

@@ -3,33 +3,14 @@
 /// The library's own ways to an answer, and its slow stages on their own.
 #pragma once
 
-#include "benchmark/answer.h"
+#include "benchmark/library_box.h"
 #include "exact/clip.h"
 #include "exact/estimate.h"
 #include "geometry/solve.h"
 
 #include <box_query/intersection.h>
 
-#include <memory>
-
 namespace box_query::benchmark {
-
-/// A box as a Scene keeps it: what the filter reads, apart from what only its slow stages do.
-struct LibraryBox {
-  struct Slow {
-    OrientedBox box;
-    Rows rows;
-  };
-  Prepared<OrientedSlabs> filter;
-  std::shared_ptr<const Slow> slow;
-
-  const OrientedBox& box() const { return slow->box; }
-};
-
-inline LibraryBox libraryBox(const OrientedBox& box) {
-  return {prepared(box), std::make_shared<const LibraryBox::Slow>(
-                             LibraryBox::Slow{box, doubleDoubleRows(box.orientation)})};
-}
 
 struct LibraryTest {
   static constexpr const char* kName = "box_query, yes or no";
@@ -39,7 +20,7 @@ struct LibraryTest {
   static Prepared prepare(const OrientedBox& box) { return libraryBox(box); }
   template <typename Component>
   static Answer ask(const Component& component, const Prepared& box) {
-    return {meets(component, doubleComponent(component), box.box(), box.filter)};
+    return {meets(component, box.box(), box.filter)};
   }
 };
 
@@ -83,7 +64,7 @@ struct LibraryEnclosed {
       return {hit, t, t};
     }
     const Enclosure e = enclose<Component>(doubles, filter.slabs);
-    const bool hit = !e.isMiss() && (e.isHit() || meetsSlowly(component, doubles, box));
+    const bool hit = !e.isMiss() && (e.isHit() || meetsByStages(component, box, filter));
     return {hit, e.enter_lo, e.enter_hi};
   }
 };

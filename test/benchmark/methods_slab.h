@@ -5,7 +5,7 @@
 /// 2013).
 #pragma once
 
-#include "benchmark/answer.h"
+#include "benchmark/library_box.h"
 
 #include <algorithm>
 
@@ -69,9 +69,10 @@ SlabComponent<Real> slabComponent(const Segment& segment) {
   return slabComponent<Real>(segment.start, segment.end - segment.start, 0.0, 1.0);
 }
 
+/// The center and the axes are read from where they are prepared: by slabBox() or by the library.
 /// `Pad::kFar` multiplies every t at which a slab is left.
-template <typename Real, typename Pad>
-Answer clipBySlabs(const SlabComponent<Real>& component, const SlabBox<Real>& box) {
+template <typename Real, typename Pad, typename BoxType>
+Answer clipBySlabs(const SlabComponent<Real>& component, const BoxType& box) {
   const Real p[3] = {component.origin[0] - box.center[0], component.origin[1] - box.center[1],
                      component.origin[2] - box.center[2]};
   Real t0 = component.t_min;
@@ -114,8 +115,30 @@ struct Slab {
 struct FloatSlab : Slab<float, NoPad> {
   static constexpr const char* kName = "float slab";
 };
-struct DoubleSlab : Slab<double, NoPad> {
+/// What the library is measured by: on its own prepared boxes, so that both read the same memory.
+struct DoubleSlab {
   static constexpr const char* kName = "double slab";
+  static constexpr bool kGivesT = true;
+  static constexpr bool kLooksAtT = false;
+  using Prepared = LibraryBox;
+  static Prepared prepare(const OrientedBox& box) { return libraryBox(box); }
+  template <typename Component>
+  static Answer ask(const Component& component, const Prepared& box) {
+    return clipBySlabs<double, NoPad>(slabComponent<double>(component), box.filter.slabs);
+  }
+};
+/// A lone one is prepared as the library does it.
+template <>
+struct Lone<DoubleSlab> {
+  static constexpr const char* kName = DoubleSlab::kName;
+  static constexpr bool kGivesT = true;
+  static constexpr bool kLooksAtT = false;
+  using Prepared = OrientedBox;
+  static const OrientedBox& prepare(const OrientedBox& box) { return box; }
+  template <typename Component>
+  static Answer ask(const Component& component, const OrientedBox& box) {
+    return clipBySlabs<double, NoPad>(slabComponent<double>(component), doubleSlabs(box));
+  }
 };
 struct PaddedSlab : Slab<double, IzePad> {
   static constexpr const char* kName = "padded slab";

@@ -40,7 +40,7 @@ bq_patch(src/exact/clip.h "if (!outside && order <= 0) {" "if (!outside && order
 bq_patch(src/exact/clip.h "if (enters >= 0) {" "if (enters >= (mutation.ties_name_one_face ? 1 : 0)) {")
 bq_patch(src/exact/clip.h "  return order != kUnknownSign;" "  return mutation.skip_exact_stage || order != kUnknownSign;")
 bq_patch(src/exact/estimate.h "return above == below &&" "return (mutation.skip_rounding_test || above == below) &&")
-bq_patch(src/geometry/solve.h "return meetsSlowly(" "return mutation.skip_slow_stages || meetsSlowly(")
+bq_patch(src/geometry/solve.cpp "return meetsSlowly(" "return mutation.skip_slow_stages || meetsSlowly(")
 
 # Only what has changed is written, and compiled, again.
 foreach(file ${core_files})
