@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "benchmark/accuracy.h"
+#include "benchmark/bars.h"
 #include "benchmark/report.h"
 
 #include <cstdio>
@@ -19,6 +20,8 @@ segments with boxes, side by side in one run, their answers compared with the ex
   --rounds N       turns of each method on the clock (31)
   --seed S         of all input (1)
   --csv FILE       write the table there too
+  --bars           end with what the certified answers may cost, a line a bar
+  --slow-pairs N   random pairs over which those are counted that plain double could not decide (20000000)
 )";
 
 /// The value of option `name` at argv[i], or null.
@@ -34,6 +37,8 @@ const char* valueOf(const char* name, int argc, char** argv, int& i) {
 int main(int argc, char** argv) {
   Options options;
   std::string csv;
+  bool bars = false;
+  std::uint64_t slow_pairs = 20000000;
   for (int i = 1; i < argc; ++i) {
     if (const char* sample = valueOf("--sample", argc, argv, i)) {
       options.pair_sample = std::stoul(sample);
@@ -44,6 +49,10 @@ int main(int argc, char** argv) {
       options.seed = std::stoull(seed);
     } else if (const char* file = valueOf("--csv", argc, argv, i)) {
       csv = file;
+    } else if (const char* pairs = valueOf("--slow-pairs", argc, argv, i)) {
+      slow_pairs = std::stoull(pairs);
+    } else if (std::strcmp(argv[i], "--bars") == 0) {
+      bars = true;
     } else {
       std::cerr << kUsage;
       return std::strcmp(argv[i], "--help") == 0 ? 0 : 2;
@@ -61,6 +70,10 @@ int main(int argc, char** argv) {
       std::cerr << "Cannot write " << csv << '\n';
       return 1;
     }
+  }
+  if (bars) {
+    std::cout << '\n';
+    printBars(measureBars(rows, options, slow_pairs), std::cout);
   }
   return 0;
 }
