@@ -123,6 +123,7 @@ void answer(const CastRaysRequest& request, Context& context, CastRaysResponse& 
   response.normals.resize(want_normals ? rays : 0);
   response.boxes.resize(want_boxes ? rays : 0);
   for (std::size_t i = 0; i < rays; ++i) {
+    checkRunning();
     const Ray ray =
         rayIn(context, elementAt(request.origins, i), request.directions[i], {"directions", i});
     const double max_range =

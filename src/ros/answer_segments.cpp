@@ -161,6 +161,7 @@ void answer(const CheckSegmentsRequest& request, Context& context,
   response.first_blocked = -1;
 
   for (std::size_t i = 0; i < segments; ++i) {
+    checkRunning();
     const auto [start, end] = endsOf(request, i);
     const Segment segment =
         segmentIn(context, request.points[start], request.points[end], {"points", start});

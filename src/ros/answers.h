@@ -39,7 +39,8 @@ struct Context {
 
 /// Fills the whole response but for `success` and `message`.
 /// @pre check(request)
-/// @throws std::invalid_argument if a number overflows in the fixed frame.
+/// @throws std::invalid_argument if a number overflows in the fixed frame; std::runtime_error in
+/// the middle of a batch when the node shuts down, so that it need not wait for the rest.
 void answer(const CastRayRequest& request, Context& context, CastRayResponse& response);
 void answer(const CastRaysRequest& request, Context& context, CastRaysResponse& response);
 void answer(const CheckSegmentRequest& request, Context& context, CheckSegmentResponse& response);

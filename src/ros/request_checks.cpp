@@ -5,6 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include <ros/init.h>
+
 namespace box_query {
 namespace {
 
@@ -68,6 +70,12 @@ void checkCount(const char* what, std::size_t count, std::size_t max_queries) {
     throw std::invalid_argument("the request has " + std::to_string(count) + " " + what +
                                 ", at most " + std::to_string(max_queries) +
                                 " are taken: split it, or raise ~max_queries_per_call");
+  }
+}
+
+void checkRunning() {
+  if (ros::isShuttingDown()) {
+    throw std::runtime_error("the node shuts down: ask again when it is back");
   }
 }
 

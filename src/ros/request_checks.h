@@ -36,6 +36,9 @@ void checkRadius(const Field& field, double radius);
 void checkLength(const char* name, std::size_t length, std::size_t queries, bool may_be_empty);
 void checkCount(const char* what, std::size_t count, std::size_t max_queries);
 
+/// @throws std::runtime_error if the node shuts down: nobody would read the rest of a batch.
+void checkRunning();
+
 /// What all requests share.
 void checkHeader(const std_msgs::Header& header);
 template <class Request>

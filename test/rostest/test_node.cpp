@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the node starts and stops. BQ_NODE is its path.
+#include <box_query/CastRays.h>
 #include <box_query/GetScene.h>
 
+#include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <future>
 #include <set>
 #include <string>
 #include <vector>
@@ -19,6 +24,7 @@
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <visualization_msgs/Marker.h>
 
 extern char** environ;
 
@@ -58,6 +64,17 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void signal(int number) const { kill(pid_, number); }
+
+  /// [s] of processor time that it has used.
+  double processorTime() const {
+    std::ifstream stat("/proc/" + std::to_string(pid_) + "/stat");
+    std::string field;
+    double ticks = 0;
+    for (int i = 1; i <= 15 && stat >> field; ++i) {  // 14: in user mode, 15: in the system
+      ticks += i >= 14 ? std::stod(field) : 0;
+    }
+    return ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
+  }
 
   Ending wait() {
     Ending ending;
@@ -113,6 +130,55 @@ TEST(Node, WarnsOfAParameterThatItDoesNotKnowAndEndsCleanly) {
         << ending.output;
     EXPECT_NE(ending.output.find("/" + name + "/cast_ray"), std::string::npos) << ending.output;
     EXPECT_FALSE(ros::service::exists("/" + name + "/get_scene", false)) << "still registered";
+  }
+}
+
+TEST(Node, EndsInTheMiddleOfABatch) {
+  Process process({"__name:=busy", "boxes:=many_boxes"});
+  ros::NodeHandle nh;
+  ros::Publisher publisher = nh.advertise<visualization_msgs::Marker>("many_boxes", 1, true);
+  visualization_msgs::Marker boxes;
+  boxes.header.frame_id = "map";
+  boxes.type = visualization_msgs::Marker::CUBE_LIST;
+  // Rays pass through the corner of every box's bounds and miss the box, so that each is looked at.
+  boxes.pose.orientation.x = std::sqrt(0.5 - std::sqrt(0.125));
+  boxes.pose.orientation.w = std::sqrt(0.5 + std::sqrt(0.125));
+  boxes.scale.x = boxes.scale.y = boxes.scale.z = 0.5;
+  boxes.points.resize(20000);
+  for (std::size_t i = 0; i < boxes.points.size(); ++i) {
+    boxes.points[i].x = static_cast<double>(i);
+  }
+  publisher.publish(boxes);
+  ASSERT_TRUE(ros::service::waitForService("/busy/cast_rays", ros::Duration(10)));
+
+  box_query::CastRays batch;  // of minutes
+  batch.request.header.frame_id = "map";
+  batch.request.origins.resize(1);
+  batch.request.origins[0].y = batch.request.origins[0].z = 0.3;
+  batch.request.directions.resize(1000000);
+  for (auto& direction : batch.request.directions) {
+    direction.x = 1;
+  }
+  box_query::GetScene scene;
+  for (int i = 0; i < 1000 && scene.response.poses.empty(); ++i) {
+    ros::service::call("/busy/get_scene", scene);
+    ros::WallDuration(0.01).sleep();
+  }
+  ASSERT_EQ(scene.response.poses.size(), boxes.points.size());
+  const double before = process.processorTime();
+  auto answered =
+      std::async(std::launch::async, [&] { return ros::service::call("/busy/cast_rays", batch); });
+  for (int i = 0; i < 1000 && process.processorTime() < before + 1.0; ++i) {
+    ros::WallDuration(0.01).sleep();
+  }
+  ASSERT_GE(process.processorTime(), before + 1.0) << "the batch does not run";
+  ASSERT_EQ(answered.wait_for(std::chrono::seconds(0)), std::future_status::timeout);
+  process.signal(SIGINT);
+  EXPECT_EQ(process.wait().exit_code, 0);
+  // roscpp may close the connection before the answer is out.
+  if (answered.get()) {
+    EXPECT_FALSE(batch.response.success);
+    EXPECT_EQ(batch.response.message, "the node shuts down: ask again when it is back");
   }
 }
 
