@@ -73,12 +73,13 @@ void BoxTracker::receive(std::size_t topic_index, const BoxSource* source, Decod
   }
 }
 
-void BoxTracker::setConflict(std::size_t topic_index, const std::string& type) {
+void BoxTracker::setUnheard(std::size_t topic_index, std::size_t publishers,
+                            const std::string& type) {
   Topic& topic = topics_.at(topic_index);
-  const bool same = topic.heard_type.empty() || type == topic.heard_type;
-  const std::string conflict = same ? "" : type;
-  if (conflict != topic.conflict_type) {
-    topic.conflict_type = conflict;
+  const std::string latest_type = publishers > 0 ? type : "";
+  if (publishers != topic.unheard || latest_type != topic.latest_type) {
+    topic.unheard = publishers;
+    topic.latest_type = latest_type;
     ++changes_;
   }
 }
@@ -295,10 +296,8 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
 
   if (!topic.refusal.empty()) {
     state.problem = topic.refusal;
-  } else if (!topic.conflict_type.empty()) {
-    state.problem = "Topic " + state.parameters.topic + " has publishers of two types, " +
-                    topic.heard_type + " and " + topic.conflict_type +
-                    ": the latter cannot be heard; give each type a topic of its own.";
+  } else if (topic.unheard > 0) {
+    state.problem = unheardSentence(topic);
   } else if (state.rejected > 0) {
     state.problem = boxesOf(state.rejected, state.parameters.topic) + " cannot be used: " + bad +
                     ". Publish it again, correctly, or delete it.";
@@ -308,6 +307,17 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
   } else if (state.waiting > 0) {
     state.problem = missingSentence(index);
   }
+}
+
+std::string BoxTracker::unheardSentence(const Topic& topic) {
+  const std::string& name = topic.state.parameters.topic;
+  if (!topic.heard_type.empty() && topic.latest_type != topic.heard_type) {
+    return "Topic " + name + " has publishers of two types, " + topic.heard_type + " and " +
+           topic.latest_type + ": the latter cannot be heard; give each type a topic of its own.";
+  }
+  return std::to_string(topic.unheard) + " of the publishers of topic " + name +
+         " cannot be heard: give those of another type a topic of their own, correct the ROS_IP of "
+         "those that cannot be reached, and forget those that are dead by rosnode cleanup.";
 }
 
 std::string BoxTracker::missingSentence(std::size_t topic) const {

@@ -38,9 +38,9 @@ class BoxTracker {
   /// type is not understood.
   void receive(std::size_t topic, const BoxSource* source, DecodedMessage&& message,
                const ros::Time& now);
-  /// A publisher that cannot be heard beside the others, as it publishes `type`; empty: there is
-  /// none.
-  void setConflict(std::size_t topic, const std::string& type);
+  /// So many publishers of the topic cannot be heard beside the others; `type` is that of the
+  /// publisher that came last, heard or not: the master knows no more.
+  void setUnheard(std::size_t topic, std::size_t publishers, const std::string& type);
 
   /// Places the boxes whose transform has come; gives up those that waited too long.
   void settle(Clock::time_point now);
@@ -63,9 +63,10 @@ class BoxTracker {
  private:
   struct Topic {
     TopicState state;
-    std::string refusal;        ///< of its last message; empty if that was accepted
-    std::string heard_type;     ///< of that message
-    std::string conflict_type;  ///< of a publisher that cannot be heard; empty if all can
+    std::string refusal;      ///< of its last message; empty if that was accepted
+    std::string heard_type;   ///< of that message
+    std::size_t unheard = 0;  ///< publishers that cannot be heard
+    std::string latest_type;  ///< of the publisher that came last, if some cannot be heard
   };
 
   void apply(std::size_t topic, BoxChange&& change, const ros::Time& now);
@@ -75,6 +76,7 @@ class BoxTracker {
   void noteStamp(const ros::Time& stamp, const ros::Time& now);
   const std::optional<FramePose>& pose(const WaitingList::Place& place);
   void draftTopic(std::size_t topic, Draft& draft);
+  static std::string unheardSentence(const Topic& topic);
   std::string missingSentence(std::size_t topic) const;
 
   const Parameters parameters_;

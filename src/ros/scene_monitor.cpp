@@ -176,11 +176,11 @@ void SceneMonitor::Impl::checkPublishers() {
       topic.subscriber.shutdown();
       subscribe(index);
     }
-    const bool conflict = connected > 0 && missing && topic.missing;  // not just on its way
+    const bool unheard = connected > 0 && missing && topic.missing;  // not just on its way
     topic.connected = connected > 0;
     topic.missing = missing;
     const std::lock_guard<std::mutex> lock(mutex);
-    tracker.setConflict(index, conflict ? published.type : "");
+    tracker.setUnheard(index, unheard ? published.nodes - connected : 0, published.type);
   }
 }
 
