@@ -1,0 +1,50 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# Builds the core and same_bits.cpp in other ways, and compares what they print with what the program of the ordinary
+# build prints.
+#   same_bits.sh COMPILER PROGRAM SOURCE_DIR EIGEN_INCLUDE_DIR SOURCE...
+set -eu
+compiler=$1 program=$2 root=$3 eigen=$4
+shift 4
+if ! command -v "$compiler" >/dev/null; then
+  echo "$compiler was not found: install it to compare its answers"
+  exit 77
+fi
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+"$program" > "$work/expected"
+
+# What the processor cannot run is left out, and said.
+run_with() {
+  name=$(echo "$*" | tr -d ' ')
+  mkdir "$work/$name"
+  printf '%s\n' $sources | xargs -P 2 -I SOURCE sh -c '
+    object=$(echo SOURCE | tr / _).o
+    exec "$@" -c "SOURCE" -o "'"$work/$name"'/$object"' sh "$compiler" -std=c++17 -ffp-contract=off -w \
+    -I"$root/include" -I"$root/src" -I"$root/test" -isystem "$eigen" "$@"
+  "$compiler" "$work/$name"/*.o -o "$work/$name/program" -pthread
+  if "$work/$name/program" > "$work/$name/answers" && cmp -s "$work/expected" "$work/$name/answers"; then
+    echo "$compiler $*: the same"
+  else
+    echo "$compiler $*: DIFFERENT"
+    diff "$work/expected" "$work/$name/answers" || true
+    different=1
+  fi
+}
+
+sources=$*
+different=0
+no_slp=
+case $compiler in
+  g++*) no_slp=-fno-tree-slp-vectorize ;;  # see bq_configure
+esac
+run_with -O0
+run_with -O3
+if grep -qw fma /proc/cpuinfo 2>/dev/null; then
+  run_with -O2 -mfma $no_slp
+else
+  echo "no FMA on this machine: not compared"
+fi
+run_with -O3 -march=native $no_slp
+exit $different
