@@ -209,8 +209,8 @@ inline ParameterBounds firstWithinBounds(const SegmentSlabs& s, double radius, d
   const Excess w = excessAt(s, guess);
   const double steepness = -dot(s.direction, w) / length(w);
   const double slack = 4.0 * s.error() / steepness + 0x1p-50 * guess;
-  if (!(slack < 1.0)) {
-    return bounds;
+  if (!(steepness > 0.0 && slack < 1.0)) {
+    return bounds;  // where the distance does not fall, a step to either side tells nothing
   }
   const Excess before = excessAt(s, guess - slack);
   if (guess > slack && length(before) - s.error() > radius && isFalling(s, before)) {

@@ -118,6 +118,17 @@ TEST(SceneClearance, APathOverAShelfTiesWithAllThatItPasses) {
   EXPECT_EQ(Scene(shelf).firstBlockage(back, 0.5).box, 19U);
 }
 
+TEST(SceneClearance, BoxesThatBlockTheStartTieWhereverThePathLeads) {
+  // The path keeps its distance from the first box and leaves the second one; the radius is the
+  // next double after the distance from both, so that no filter is sure of either.
+  const Scene scene({AlignedBox{{-2.5, -1.0, -0.5}, {-1.5, 0.0, 1.5}},
+                     AlignedBox{{1.0, -2.5, 2.0}, {2.0, -2.5, 3.0}}});
+  const Segment path{{-1.5, -3.5, 2.5}, {-2.5, -3.5, 2.5}};
+  const Blockage blockage = scene.firstBlockage(path, std::nextafter(std::sqrt(7.25), 3.0));
+  EXPECT_EQ(blockage.box, 0U);
+  EXPECT_EQ(blockage.blocked_at, 0.0);
+}
+
 TEST(SceneClearance, AgreesWithEveryBoxAlone) {
   std::mt19937_64 engine(7);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
