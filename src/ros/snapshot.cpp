@@ -39,6 +39,9 @@ std::string missingOf(const TopicState& topic, const ros::Time& now) {
 
 Completeness Snapshot::completeness(const ros::Time& now) const {
   Completeness result;
+  if (now.isZero()) {  // then lifetimes never end, and nothing grows stale
+    result.reason = "The ROS clock has not started: publish /clock, or unset /use_sim_time.";
+  }
   for (const TopicState& topic : topics) {
     const std::string missing = missingOf(topic, now);
     if (!missing.empty()) {

@@ -24,6 +24,21 @@ class SceneMonitorClock : public testing::Test {
   Talker<rosgraph_msgs::Clock> clock_{"/clock"};
 };
 
+// The first test, since a clock cannot be unset again.
+TEST_F(SceneMonitorClock, IsIncompleteBeforeItHasStarted) {
+  ASSERT_TRUE(ros::Time::now().isZero());
+  SceneMonitor monitor(ros::NodeHandle(), listenTo({"no_clock"}));
+  ArrayTalker talker("no_clock");
+  ASSERT_TRUE(talker.isHeard());
+  talker.say(array({cube("map", 1, 1.0)}));
+  ASSERT_TRUE(hasBoxes(monitor, 1));
+  EXPECT_EQ(completenessOf(monitor).reason,
+            "The ROS clock has not started: publish /clock, or unset /use_sim_time.");
+  EXPECT_FALSE(completenessOf(monitor).complete);
+  setTime(1.0);
+  EXPECT_TRUE(completenessOf(monitor).complete) << completenessOf(monitor).reason;
+}
+
 TEST_F(SceneMonitorClock, EndsLifetimesAndTimeoutsToTheNanosecond) {
   setTime(100.0);
   Parameters parameters = listenTo({"clock_life"});

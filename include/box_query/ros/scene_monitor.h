@@ -60,7 +60,8 @@ struct Snapshot {
   std::vector<ros::Time> stamps;   ///< ... and came with this stamp (of the message)
   std::vector<TopicState> topics;  ///< in the order of the parameter
 
-  /// At ROS time `now`: every required topic heard, none stale, no box waiting or rejected.
+  /// At ROS time `now`: every required topic heard, none stale, no box waiting or rejected. At time
+  /// 0, before a simulated clock has started, nothing is complete.
   Completeness completeness(const ros::Time& now) const;
   /// [s] from `stamp` to `now`; +inf if no message has been heard.
   double age(const ros::Time& now) const;
