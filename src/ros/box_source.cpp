@@ -3,12 +3,19 @@
 
 #include <algorithm>
 #include <numeric>
+#include <sstream>
 
 namespace box_query {
 namespace {
 
 /// How far the norm of a quaternion may be from 1. Less is taken as it stands.
 constexpr double kNormTolerance = 1e-2;
+
+std::string print(double number) {
+  std::ostringstream out;
+  out << number;
+  return out.str();
+}
 
 bool isNearUnit(const Quaternion& q) {
   const double squared = q.squaredNorm();
@@ -47,9 +54,9 @@ void BoxChange::add(std::int64_t box_id, const Vector3& center, const Quaternion
   } else if (!size.allFinite()) {
     reject(Rejection::kNotFinite, 1, "its size");
   } else if ((size.array() < 0.0).any()) {
-    reject(Rejection::kNegativeSize, 1, std::to_string(size.minCoeff()) + " m");
+    reject(Rejection::kNegativeSize, 1, print(size.minCoeff()) + " m");
   } else if (!isNearUnit(orientation)) {
-    reject(Rejection::kOrientation, 1, "its norm is " + std::to_string(orientation.norm()));
+    reject(Rejection::kOrientation, 1, "its norm is " + print(orientation.norm()));
   } else {
     boxes.push_back({box_id, {center, orientation, 0.5 * size}});
   }

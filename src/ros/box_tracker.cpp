@@ -13,6 +13,10 @@ std::string boxesOf(std::size_t boxes, const std::string& topic) {
   return std::to_string(boxes) + (boxes == 1 ? " box" : " boxes") + " of topic " + topic;
 }
 
+std::string waitingOf(std::size_t boxes, const std::string& topic) {
+  return boxesOf(boxes, topic) + (boxes == 1 ? " waits" : " wait");
+}
+
 std::string nameOf(const BoxChange& change) {
   return "box " + std::to_string(change.id) + " of namespace '" + change.ns + "'";
 }
@@ -179,7 +183,7 @@ void BoxTracker::settle(Clock::time_point now) {
       counts_.given_up_boxes += word.change.boxes.size();
       store_.giveUp(word, nameOf(word.change) + " was given up: " +
                               describe(placeOf(word.change), parameters_.fixed_frame) +
-                              " has not come in time; publish it, then the box again");
+                              " has not come in time; publish that first");
     }
   });
 }
@@ -300,9 +304,9 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
     state.problem = unheardSentence(topic);
   } else if (state.rejected > 0) {
     state.problem = boxesOf(state.rejected, state.parameters.topic) + " cannot be used: " + bad +
-                    ". Publish it again, correctly, or delete it.";
+                    ". Publish the box again, correctly, or delete it.";
   } else if (!lost_frame.empty()) {
-    state.problem = boxesOf(state.waiting, state.parameters.topic) + " wait for " +
+    state.problem = waitingOf(state.waiting, state.parameters.topic) + " for " +
                     describe({lost_frame, ros::Time()}, parameters_.fixed_frame) + ": publish it.";
   } else if (state.waiting > 0) {
     state.problem = missingSentence(index);
@@ -321,13 +325,13 @@ std::string BoxTracker::unheardSentence(const Topic& topic) {
 }
 
 std::string BoxTracker::missingSentence(std::size_t topic) const {
-  std::string text = boxesOf(store_.waiting(topic), parameters_.box_topics[topic].topic);
+  std::string text = waitingOf(store_.waiting(topic), parameters_.box_topics[topic].topic);
   const WaitingList::Place* place =
       waiting_.firstPlace(topic, [this](const Word& word) { return store_.wants(word); });
   if (place) {
     const std::string error =
         missingPose(tf_, parameters_.fixed_frame, place->first, place->second);
-    text += " wait for " + describe(*place, parameters_.fixed_frame) +
+    text += " for " + describe(*place, parameters_.fixed_frame) +
             (error.empty() ? "" : " (" + error + ")") + ": publish it.";
   }
   return text;

@@ -276,6 +276,9 @@ TEST(MarkerSource, RejectsNegativeSizesOrientationsOffUnitLengthAndBadFrames) {
   Marker negative = cube();
   negative.scale.y = -1e-300;
   EXPECT_EQ(countOf(decode(negative).changes.at(0), Rejection::kNegativeSize), 1U);
+  negative.scale.y = -1e-9;
+  const std::string problem = decode(negative).changes.at(0).problem;
+  EXPECT_NE(problem.find("(-1e-09 m)"), std::string::npos) << problem;
 
   for (const double norm : {0.5, 0.98, 1.02, 1e-200, 1e200}) {
     Marker marker = cube();
