@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stress/run_families.h"
 
+#include "exact/stage_counters.h"
 #include "stress/check_pair.h"
 #include "stress/check_scene.h"
 #include "stress/families.h"
@@ -22,6 +23,10 @@ Tally onThreads(std::uint64_t count, int threads, const Check& check) {
       for (std::uint64_t index = first; index < count; index += stride) {
         check(index, tallies[first]);
       }
+      const exact::StageCounters& counters = exact::stageCounters();  // a new thread's own
+      tallies[first].certified_decisions = counters.certified_decisions;
+      tallies[first].exact_decisions = counters.exact_decisions;
+      tallies[first].exact_roundings = counters.exact_roundings;
     });
   }
   for (std::thread& worker : workers) {

@@ -87,7 +87,7 @@ SceneSample lattice(Random& random) {
     const Vector3 size = random.halves(1).cwiseAbs();
     Quaternion rotation(1.0, 0.0, 0.0, 0.0);
     if (random.chance(0.5)) {
-      rotation = Quaternion(1.0 + random.below(2), 0.0, 0.0, random.half(1));
+      rotation = Quaternion{1.0 + random.below(2), 0.0, 0.0, random.half(1)};
     }
     scene.boxes.push_back(makeTarget(random.chance(0.5), center, rotation, size).box());
   }

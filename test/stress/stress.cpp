@@ -25,7 +25,11 @@ const char kHelp[] =
     "  --scenes N      scenes of many boxes, over all families of scenes (10000)\n"
     "  --seed S        another seed, other samples (1)\n"
     "  --family NAME   only this family, or all whose names begin so\n"
-    "  --threads N     threads (all of the machine's)\n";
+    "  --threads N     threads (all of the machine's)\n"
+    "The last columns but one say how often, per query, the stages in double-double and in exact\n"
+    "integers had to decide or to round. A query of a pair is three calls, or more; of a scene "
+    "one\n"
+    "for every box.\n";
 
 struct Options {
   std::uint64_t per_family = 100000;
@@ -78,19 +82,24 @@ Options parse(int argc, char** argv) {
 }
 
 void printHeader() {
-  std::printf("%-27s%10s%7s%9s%10s%10s%10s%8s%8s%8s\n", "", "", "", "", "worst ulp", "", "", "",
-              "early", "");
-  std::printf("%-27s%10s%7s%9s%10s%10s%10s%8s%8s%8s\n", "family", "queries", "hits", "wrong", "t",
-              "range", "distance", "point", "by", "s");
+  std::printf("%-29s%10s%7s%7s%10s%10s%10s%8s%7s%9s%8s%8s%7s\n", "", "", "", "", "worst ulp", "",
+              "", "", "early", "certified", "exact", "exact", "");
+  std::printf("%-29s%10s%7s%7s%10s%10s%10s%8s%7s%9s%8s%8s%7s\n", "family", "queries", "hits",
+              "wrong", "t", "range", "distance", "point", "by", "decided", "decided", "rounded",
+              "s");
 }
 
 void printRow(const std::string& name, const Tally& tally, double seconds) {
-  std::printf("%-27s%10" PRIu64 "%6.1f%%%9" PRIu64 "%10.6f%10.6f%10.6f%8.2f%8d%8.1f\n",
-              name.c_str(), tally.queries,
-              100.0 * static_cast<double>(tally.hits) /
-                  static_cast<double>(std::max<std::uint64_t>(tally.queries, 1)),
-              tally.wrong, tally.worst_t, tally.worst_range, tally.worst_distance,
-              tally.worst_point, tally.worst_blocked, seconds);
+  const auto per_query = [&tally](std::uint64_t count) {
+    return static_cast<double>(count) /
+           static_cast<double>(std::max<std::uint64_t>(tally.queries, 1));
+  };
+  std::printf("%-29s%10" PRIu64 "%6.1f%%%7" PRIu64
+              "%10.6f%10.6f%10.6f%8.2f%7d%9.4f%8.4f%8.4f%7.1f\n",
+              name.c_str(), tally.queries, 100.0 * per_query(tally.hits), tally.wrong,
+              tally.worst_t, tally.worst_range, tally.worst_distance, tally.worst_point,
+              tally.worst_blocked, per_query(tally.certified_decisions),
+              per_query(tally.exact_decisions), per_query(tally.exact_roundings), seconds);
   for (const std::string& failure : tally.failures) {
     std::printf("  WRONG %s\n", failure.c_str());
   }

@@ -15,6 +15,9 @@ void Tally::merge(const Tally& other) {
   queries += other.queries;
   hits += other.hits;
   wrong += other.wrong;
+  certified_decisions += other.certified_decisions;
+  exact_decisions += other.exact_decisions;
+  exact_roundings += other.exact_roundings;
   worst_t = std::max(worst_t, other.worst_t);
   worst_range = std::max(worst_range, other.worst_range);
   worst_distance = std::max(worst_distance, other.worst_distance);

@@ -21,6 +21,10 @@ struct Tally {
   std::uint64_t queries = 0;
   std::uint64_t hits = 0;
   std::uint64_t wrong = 0;
+  /// What the slower stages of the library had to do: see exact/stage_counters.h.
+  std::uint64_t certified_decisions = 0;
+  std::uint64_t exact_decisions = 0;
+  std::uint64_t exact_roundings = 0;
   double worst_t = 0.0;         ///< [ulp]
   double worst_range = 0.0;     ///< [ulp]
   double worst_distance = 0.0;  ///< [ulp]
