@@ -42,6 +42,7 @@ const Entry kNumbers[] = {
     {"service_threads", &P::service_threads, {1, 64, ""}, "threads that answer services"},
     {"build_ahead", &P::build_ahead, {0, 3600, "s"}, "after a query, scenes are built as boxes come for so long; later when asked for"},
     {"kept_scenes", &P::kept_scenes, {1, 10000, ""}, "past scenes that `~get_scene` can still return"},
+    {"max_kept_boxes", &P::max_kept_boxes, {0, 1e8, ""}, "boxes in all of these together; the oldest go first, the latest stays"},
     {"marker_rate", &P::marker_rate, {0.1, 100, "Hz"}, "`~markers` is published at most so often"},
     {"marker_lifetime", &P::marker_lifetime, {0.1, 3600, "s"}, "how long the markers of a query stay"},
     {"max_marker_queries", &P::max_marker_queries, {0, 10000, ""}, "queries that are drawn at once, the latest ones"},

@@ -99,6 +99,7 @@ struct SceneMonitor::Impl {
 
   std::mutex kept_mutex;
   std::deque<SnapshotPtr> kept;
+  std::size_t kept_boxes = 0;  ///< in all of them
   std::atomic<std::uint64_t> last_kept{0};
 
   std::mutex changed_mutex;  ///< held while `changed` runs
@@ -263,7 +264,11 @@ SnapshotPtr SceneMonitor::Impl::keep(SnapshotPtr handed_out) {
     const std::lock_guard<std::mutex> lock(kept_mutex);
     if (handed_out->id > last_kept) {
       kept.push_back(handed_out);
-      if (kept.size() > static_cast<std::size_t>(parameters.kept_scenes)) {
+      kept_boxes += handed_out->names.size();
+      while (
+          kept.size() > static_cast<std::size_t>(parameters.kept_scenes) ||
+          (kept.size() > 1 && kept_boxes > static_cast<std::size_t>(parameters.max_kept_boxes))) {
+        kept_boxes -= kept.front()->names.size();
         kept.pop_front();
       }
       last_kept = handed_out->id;

@@ -76,10 +76,12 @@ void Server::answerNow(const GetSceneRequest& request, GetSceneResponse& respons
   const SnapshotPtr snapshot =
       request.scene_id == 0 ? monitor_.currentScene() : monitor_.sceneById(request.scene_id);
   if (!snapshot) {
-    throw std::runtime_error("scene " + std::to_string(request.scene_id) +
-                             " is not kept: ~kept_scenes keeps the last " +
-                             std::to_string(monitor_.parameters().kept_scenes) +
-                             " that were asked; 0 is the current one");
+    throw std::runtime_error(
+        "scene " + std::to_string(request.scene_id) + " is not kept: the last " +
+        std::to_string(monitor_.parameters().kept_scenes) + " that were asked are, of at most " +
+        std::to_string(monitor_.parameters().max_kept_boxes) +
+        " boxes in all; ask sooner, raise ~kept_scenes or ~max_kept_boxes, "
+        "or ask for 0, the current one");
   }
   answer(*snapshot, ros::Time::now(), response);
 }

@@ -351,6 +351,26 @@ TEST(SceneMonitor, KeepsOnlyTheLastSnapshots) {
   EXPECT_EQ(monitor.sceneById(ids[2])->scene.size(), 3U);
 }
 
+TEST(SceneMonitor, KeepsOnlySoManyBoxesInSnapshots) {
+  Parameters parameters = listenTo({"kept_boxes"});
+  parameters.max_kept_boxes = 5;
+  SceneMonitor monitor(ros::NodeHandle(), parameters);
+  ArrayTalker talker("kept_boxes");
+  ASSERT_TRUE(talker.isHeard());
+  std::vector<std::uint64_t> ids;
+  for (int id = 1; id <= 6; ++id) {
+    talker.say(array({cube("map", id, 1.0)}));
+    ASSERT_TRUE(hasBoxes(monitor, static_cast<std::size_t>(id)));
+    ids.push_back(monitor.currentScene()->id);
+    EXPECT_NE(monitor.sceneById(ids.back()), nullptr) << "the latest stays, however large";
+    if (id == 3) {
+      EXPECT_EQ(monitor.sceneById(ids[0]), nullptr);
+      EXPECT_NE(monitor.sceneById(ids[1]), nullptr) << "2 + 3 boxes fit";
+    }
+  }
+  EXPECT_EQ(monitor.sceneById(ids[4]), nullptr);
+}
+
 TEST(SceneMonitor, TellsOfChangesAndOfNothingElse) {
   SceneMonitor monitor(ros::NodeHandle(), listenTo({"told"}));
   ArrayTalker talker("told");

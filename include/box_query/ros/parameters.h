@@ -52,6 +52,8 @@ struct Parameters {
   double build_ahead = 2.0;
   /// Past snapshots that ~get_scene can still return.
   int kept_scenes = 100;
+  /// Boxes in all of them together, some 500 bytes each; the oldest go first, the latest stays.
+  int max_kept_boxes = 1000000;
 
   /// [Hz] at most at which ~markers is published.
   double marker_rate = 10.0;

@@ -112,8 +112,8 @@ class SceneMonitor {
   /// be.
   SnapshotPtr currentScene();
 
-  /// One of the last Parameters::kept_scenes snapshots that currentScene() or scene() handed out,
-  /// or null.
+  /// One of the last snapshots that currentScene() or scene() handed out, as many as
+  /// Parameters::kept_scenes and max_kept_boxes allow, or null.
   SnapshotPtr sceneById(std::uint64_t id) const;
 
   /// Pose of `source` in `target` at `stamp` (0: latest), waiting for it up to `timeout` seconds of
