@@ -12,6 +12,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import xml.etree.ElementTree as ElementTree
 from collections import namedtuple
@@ -208,20 +209,25 @@ def main():
     environment = {key: value for key, value in os.environ.items()
                    if key not in ('ROS_HOSTNAME', 'ROS_NAMESPACE', 'ROS_LOG_DIR', 'ROS_MASTER_URI')}
     # rostest starts a master of its own, on a free port.
-    environment.update(ROS_IP='127.0.0.1', ROS_HOME=os.path.join(arguments.build_dir, 'ros_home'))
+    environment['ROS_IP'] = '127.0.0.1'
     cases = []
-    for test in tests:
-        if arguments.names and not any(name in test.name for name in arguments.names):
-            continue
-        folder = os.path.join(arguments.build_dir, 'test_results', test.name)
-        results = run(test, folder, environment, arguments.verbose)
-        for case in without_unexpected_skips(results, arguments.allow_skips):
-            label = case.name if test.name in case.name else test.name + ' ' + case.name
-            print('%-7s %8.2f s  %s' % (case.outcome, case.seconds, label))
-            for line in case.text.splitlines():
-                print('        ' + line)
-            sys.stdout.flush()
-            cases.append(case)
+    with tempfile.TemporaryDirectory() as temporary:
+        # rostest splits the path of its results at a space, which the build directory's may have.
+        build_dir = os.path.join(temporary, 'build')
+        os.symlink(os.path.abspath(arguments.build_dir), build_dir)
+        environment['ROS_HOME'] = os.path.join(build_dir, 'ros_home')
+        for test in tests:
+            if arguments.names and not any(name in test.name for name in arguments.names):
+                continue
+            folder = os.path.join(build_dir, 'test_results', test.name)
+            results = run(test, folder, environment, arguments.verbose)
+            for case in without_unexpected_skips(results, arguments.allow_skips):
+                label = case.name if test.name in case.name else test.name + ' ' + case.name
+                print('%-7s %8.2f s  %s' % (case.outcome, case.seconds, label))
+                for line in case.text.splitlines():
+                    print('        ' + line)
+                sys.stdout.flush()
+                cases.append(case)
     print(closing_line(cases))
     outcomes = {case.outcome for case in cases}
     return 0 if PASSED in outcomes and FAILED not in outcomes else 1
