@@ -13,16 +13,17 @@ fi
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+printf '%s\n' "$@" > "$work/sources"
 "$program" > "$work/expected"
 
 # What the processor cannot run is left out, and said.
 run_with() {
   name=$(echo "$*" | tr -d ' ')
   mkdir "$work/$name"
-  printf '%s\n' $sources | xargs -P 2 -I SOURCE sh -c '
-    object=$(echo SOURCE | tr / _).o
-    exec "$@" -c "SOURCE" -o "'"$work/$name"'/$object"' sh "$compiler" -std=c++17 -ffp-contract=off -w \
-    -I"$root/include" -I"$root/src" -I"$root/test" -isystem "$eigen" "$@"
+  xargs -P 2 -I SOURCE sh -c 'source=$1 object=$2/$(echo "$1" | tr "/ " __).o
+    shift 2
+    exec "$@" -c "$source" -o "$object"' sh SOURCE "$work/$name" "$compiler" -std=c++17 -ffp-contract=off -w \
+    -I"$root/include" -I"$root/src" -I"$root/test" -isystem "$eigen" "$@" < "$work/sources"
   "$compiler" "$work/$name"/*.o -o "$work/$name/program" -pthread
   if "$work/$name/program" > "$work/$name/answers" && cmp -s "$work/expected" "$work/$name/answers"; then
     echo "$compiler $*: the same"
@@ -33,7 +34,6 @@ run_with() {
   fi
 }
 
-sources=$*
 different=0
 no_slp=
 case $compiler in
