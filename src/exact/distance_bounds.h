@@ -6,7 +6,7 @@
 
 namespace box_query::exact::bounds {
 
-/// Distances from DoubleSlabs, whose scale is s: see geometry/distance_filter.h.
+/// Distances from SegmentSlabs, whose scale is s: see geometry/distance_filter.h.
 constexpr double kDistance = 160 * 0x1p-53;
 /// The slope of the squared distance, times |direction|_1 s.
 constexpr double kSlope = 160 * 0x1p-53;
