@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # What the commands of this package share: find ROS, install what is missing, build. To be sourced by bash.
 #   bq_set_up [--yes] GROUP...    groups of packages: build, demo, viewer, test, benchmark, checks
-#   bq_build BUILD_DIR TARGETS... [-- CMAKE_OPTION...]
+#   bq_build [--with-tests] BUILD_DIR TARGETS... [-- CMAKE_OPTION...]
+#     where nothing is configured, configures with these options; without --with-tests no test is, since the tests need
+#     packages of their own. A configuration without tests gets them when they are wanted, and keeps what is built.
 # Both return 1 after a sentence on stderr that says what to do.
 
 bq_source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -133,8 +135,19 @@ bq_logged() {
   fi
 }
 
+# Whether tests are configured: they are not by the demo, nor where what they need was missing.
+bq_has_tests() {
+  [ -e "$1/tests.txt" ] && grep -qxF CATKIN_ENABLE_TESTING:BOOL=ON "$1/CMakeCache.txt"
+}
+
 bq_build() {
-  local build_dir=$1
+  local build_dir tests=OFF cache
+  if [ "$1" = --with-tests ]; then
+    tests=ON
+    shift
+  fi
+  build_dir=$1
+  cache=$build_dir/CMakeCache.txt
   shift
   local -a targets=()
   while [ $# -gt 0 ] && [ "$1" != -- ]; do
@@ -143,16 +156,16 @@ bq_build() {
   done
   [ $# -eq 0 ] || shift
   # A checkout that was moved or copied is built anew.
-  if [ -e "$build_dir/CMakeCache.txt" ] &&
-    ! grep -qxF "CMAKE_CACHEFILE_DIR:INTERNAL=$build_dir" "$build_dir/CMakeCache.txt"; then
+  if [ -e "$cache" ] && ! grep -qxF "CMAKE_CACHEFILE_DIR:INTERNAL=$build_dir" "$cache"; then
     rm -rf "$build_dir"
   fi
   mkdir -p "$build_dir"
-  if [ ! -e "$build_dir/Makefile" ]; then
+  if [ ! -e "$build_dir/Makefile" ] ||
+    { [ $tests = ON ] && ! bq_has_tests "$build_dir"; }; then
     echo "Configuring in $build_dir" >&2
     bq_logged "$build_dir/configure.log" cmake -S "$bq_source_dir" -B "$build_dir" \
       -G 'Unix Makefiles' -DPYTHON_EXECUTABLE=/usr/bin/python3 \
-      -DCMAKE_INSTALL_PREFIX="$build_dir/install" "$@" || return 1
+      -DCMAKE_INSTALL_PREFIX="$build_dir/install" -DCATKIN_ENABLE_TESTING=$tests "$@" || return 1
   fi
   echo "Building in $build_dir" >&2
   bq_logged "$build_dir/build.log" cmake --build "$build_dir" --target "${targets[@]}" \
