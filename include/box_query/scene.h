@@ -27,6 +27,8 @@ class BoxMask {
     return ((words_[box / 64] >> (box % 64)) & 1U) != 0;
   }
   void set(std::size_t box, bool look) noexcept;
+  /// Bit i % 64 of word i / 64 says whether to look at box i.
+  const std::uint64_t* words() const noexcept { return words_.data(); }
 
  private:
   std::size_t size_;

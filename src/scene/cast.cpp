@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "geometry/solve.h"
 #include "scene/scene_impl.h"
+#include "scene/search.h"
 
 #include <box_query/scene.h>
 
@@ -28,75 +29,6 @@ Reach reachOf(const DoubleComponent& c, double max_range) {
   return {t / exact::bounds::kInflate - exact::bounds::kUnderflow,
           t * exact::bounds::kInflate + exact::bounds::kUnderflow};
 }
-
-Solution solveBox(const Ray& ray, const DoubleComponent& component, const Box& box,
-                  const PreparedBox& prepared) {
-  const bool moderate = prepared.kind != PreparedBox::Kind::kExactOnly;
-  if (const auto* aligned = std::get_if<AlignedBox>(&box)) {
-    return solve(ray, component, *aligned,
-                 Prepared<AlignedSlabs>{prepared.aligned, moderate, prepared.compact});
-  }
-  return solve(ray, component, *std::get_if<OrientedBox>(&box),
-               Prepared<OrientedSlabs>{prepared.oriented, moderate, prepared.compact});
-}
-
-/// A box that the ray certainly meets, entered at a parameter in [enter_lo, enter_hi].
-struct Candidate {
-  std::size_t box = kNoBox;
-  double enter_lo = kInf;
-  double enter_hi = kInf;
-  std::optional<Solution> solution;
-};
-
-/// Finds the closest box. Boxes are offered in order of their index, so that a tie changes nothing.
-class Closest {
- public:
-  Closest(const Ray& ray, const DoubleComponent& component, const std::vector<Box>& boxes,
-          const std::vector<PreparedBox>& prepared)
-      : ray_(ray), component_(component), boxes_(boxes), prepared_(prepared) {}
-
-  std::size_t box() const { return best_.box; }
-
-  /// A box that is entered here or later cannot be the closest any more.
-  double bound() const { return best_.enter_hi; }
-
-  Solution& solution() { return solutionOf(best_); }
-
-  /// A box that is certainly met, or else one that may be.
-  void offerHit(std::size_t box, double enter_lo, double enter_hi) {
-    take({box, enter_lo, enter_hi, std::nullopt});
-  }
-  void offerUndecided(std::size_t box, const Enclosure& e) {
-    Candidate candidate{box, e.enter_lo, e.exit_hi, std::nullopt};
-    if (solutionOf(candidate).num_points > 0) {
-      take(std::move(candidate));
-    }
-  }
-
- private:
-  void take(Candidate&& candidate) {
-    if (best_.box == kNoBox || candidate.enter_hi < best_.enter_lo || isBefore(candidate, best_)) {
-      best_ = std::move(candidate);
-    }
-  }
-
-  bool isBefore(Candidate& a, Candidate& b) {
-    return compareEntries(ray_, boxes_[a.box], solutionOf(a), boxes_[b.box], solutionOf(b)) < 0;
-  }
-
-  Solution& solutionOf(Candidate& c) {
-    if (!c.solution) {
-      c.solution = solveBox(ray_, component_, boxes_[c.box], prepared_[c.box]);
-    }
-    return *c.solution;
-  }
-
-  const Ray& ray_;
-  const DoubleComponent& component_;
-  const std::vector<Box>& boxes_;
-  const std::vector<PreparedBox>& prepared_;
-  Candidate best_;
-};
 
 /// Outward normal of the face of the lowest axis in the set.
 Vector3 outwardNormal(FaceSet faces, const Box& box, bool is_aligned) {
@@ -152,60 +84,27 @@ Hit hitOf(const Ray& ray, const DoubleComponent& component, std::size_t index, c
 Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
   const DoubleComponent component = doubleComponent(ray);
   const Reach reach = reachOf(component, max_range);
-  Closest closest(ray, component, impl_->simplest, impl_->prepared);
-  forEachBox(size(), mask, [&](std::size_t i) {
-    const PreparedBox& box = impl_->prepared[i];
-    const Enclosure e = enclose<Ray>(component, box);
-    if (e.isMiss() || e.enter_lo >= closest.bound() || e.enter_lo > reach.outside) {
-      return true;
-    }
-    if (e.isHit()) {
-      closest.offerHit(i, e.enter_lo, e.enter_hi);
-    } else if (crossesThinSlab<Ray>(component, box)) {
-      closest.offerHit(i, e.enter_lo, e.exit_hi);
-    } else {
-      closest.offerUndecided(i, e);
-    }
-    return true;
-  });
-  if (closest.box() == kNoBox) {
+  FirstEntered<Ray> first(ray, component, impl_->simplest, impl_->prepared);
+  impl_->findFirst(first, component, reach.outside, mask);
+  if (!first.any()) {
     return {};
   }
-  return hitOf(ray, component, closest.box(), impl_->boxes[closest.box()],
-               impl_->simplest[closest.box()], closest.solution(), max_range);
+  return hitOf(ray, component, first.box(), impl_->boxes[first.box()], impl_->simplest[first.box()],
+               first.solution(), max_range);
 }
 
 bool Scene::castAny(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
   const DoubleComponent component = doubleComponent(ray);
   const Reach reach = reachOf(component, max_range);
-  bool any = false;
-  bool undecided = false;
-  forEachBox(size(), mask, [&](std::size_t i) {
-    const PreparedBox& box = impl_->prepared[i];
-    const Enclosure e = enclose<Ray>(component, box);
-    if (!e.isMiss() && e.enter_lo <= reach.outside) {
-      any = (e.isHit() && e.enter_hi <= reach.inside) ||
-            (e.exit_hi <= reach.inside && crossesThinSlab<Ray>(component, box));
-      undecided = undecided || !any;
-    }
-    return !any;
+  const exact::DoubleDouble length =
+      max_range < kInf ? directionLength(ray) : exact::DoubleDouble();
+  return impl_->meetsAny(ray, component, reach.inside, reach.outside, mask, [&](std::size_t i) {
+    Solution solution = solveBox(ray, component, impl_->simplest[i], impl_->prepared[i]);
+    return solution.num_points > 0 &&
+           std::visit(
+               [&](const auto& b) { return isEnteredWithin(ray, b, solution, max_range, length); },
+               impl_->simplest[i]);
   });
-  if (any || !undecided) {
-    return any;
-  }
-  const exact::DoubleDouble length = directionLength(ray);
-  forEachBox(size(), mask, [&](std::size_t i) {
-    const Enclosure e = enclose<Ray>(component, impl_->prepared[i]);
-    if (!e.isMiss() && e.enter_lo <= reach.outside) {
-      Solution solution = solveBox(ray, component, impl_->simplest[i], impl_->prepared[i]);
-      any = solution.num_points > 0 &&
-            std::visit(
-                [&](const auto& b) { return isEnteredWithin(ray, b, solution, max_range, length); },
-                impl_->simplest[i]);
-    }
-    return !any;
-  });
-  return any;
 }
 
 }  // namespace box_query

@@ -5,6 +5,7 @@
 #include "geometry/solve.h"
 #include "scene/bounding_spheres.h"
 #include "scene/scene_impl.h"
+#include "scene/search.h"
 
 #include <box_query/distance.h>
 #include <box_query/intersection.h>
@@ -88,6 +89,11 @@ ParameterBounds firstWithinBounds(const NearestEstimate& estimate, double radius
 }  // namespace
 
 bool Scene::isClear(const Segment& segment, double radius, const BoxMask* mask) const noexcept {
+  if (radius == 0.0) {
+    const DoubleComponent component = doubleComponent(segment);
+    return !impl_->meetsAny(segment, component, 1.0, 1.0, mask,
+                            [&](std::size_t i) { return meet(segment, impl_->simplest[i]); });
+  }
   const SphereFilter spheres(segment, impl_->spheres);
   bool clear = true;
   forEachBox(size(), mask, [&](std::size_t i) {
@@ -136,38 +142,15 @@ Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const no
 
 Blockage Scene::Impl::firstMet(const Segment& segment, const BoxMask* mask) const {
   const DoubleComponent component = doubleComponent(segment);
-  const SphereFilter filter(segment, spheres);
-  std::size_t first = kNoBox;
-  Solution entry;
-  double bound = 1.0;
-  forEachBox(boxes.size(), mask, [&](std::size_t i) {
-    if (filter.isBeyond(i, 0.0, bound)) {
-      return true;
-    }
-    const Enclosure e = enclose<Segment>(component, prepared[i]);
-    if (e.isMiss() || e.enter_lo > bound) {
-      return true;
-    }
-    const Box& box = simplest[i];
-    Solution other = std::visit(
-        [&](const auto& b) { return solve(segment, component, b, box_query::prepared(b)); }, box);
-    if (other.num_points == 0) {
-      return true;
-    }
-    if (first == kNoBox || compareEntries(segment, box, other, simplest[first], entry) < 0) {
-      first = i;
-      entry = std::move(other);
-    }
-    bound = e.isHit() ? std::min(bound, e.enter_hi) : bound;
-    return true;
-  });
-  if (first == kNoBox) {
+  FirstEntered<Segment> first(segment, component, simplest, prepared);
+  findFirst(first, component, 1.0, mask);
+  if (!first.any()) {
     return {};
   }
-  const double blocked_at =
-      std::visit([&](const auto& b) { return roundedParameter(segment, b, entry, End::kEnter); },
-                 simplest[first]);
-  return {true, first, blocked_at};
+  const double blocked_at = std::visit(
+      [&](const auto& b) { return roundedParameter(segment, b, first.solution(), End::kEnter); },
+      simplest[first.box()]);
+  return {true, first.box(), blocked_at};
 }
 
 Blockage Scene::firstBlockage(const Segment& segment, double radius,

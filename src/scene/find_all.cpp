@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "geometry/solve.h"
+#include "scene/candidates.h"
 #include "scene/scene_impl.h"
 
 #include <box_query/scene.h>
@@ -22,23 +23,55 @@ bool isEnteredBefore(const T& linear, const DoubleComponent& component, const Bo
   return compareEntries(linear, a, at_a, b, at_b) < 0;
 }
 
+using Indices = std::vector<std::uint32_t>;
+
+double addTo(void* indices, const kernels::Found& found) {
+  for (int i = 0; i < found.count; ++i) {
+    static_cast<Indices*>(indices)->push_back(found.candidates[i].box);
+  }
+  return 1.0;
+}
+
+}  // namespace
+
 template <typename T>
-std::vector<BoxIntersection> findAllOf(const std::vector<Box>& boxes,
-                                       const std::vector<Box>& simplest,
-                                       const std::vector<PreparedBox>& prepared_boxes,
-                                       const T& linear, const BoxMask* mask) {
+std::vector<BoxIntersection> Scene::Impl::findAll(const T& linear, const BoxMask* mask) const {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
   const DoubleComponent component = doubleComponent(linear);
-  std::vector<BoxIntersection> found;
-  forEachBox(boxes.size(), mask, [&](std::size_t i) {
-    if (!enclose<T>(component, prepared_boxes[i]).isMiss()) {
-      BoxIntersection candidate{
-          i, std::visit([&](const auto& b) { return findIntersection(linear, b); }, boxes[i])};
-      if (candidate.intersection.num_points > 0) {
-        found.push_back(candidate);
-      }
+  Indices maybe;
+  const auto addAlong = [&](const kernels::RayQuery& query) {
+    kernels::Found found;
+    kernels.all(view, query, found, addTo, &maybe);
+    addTo(&maybe, found);
+  };
+  const bool for_kernels = isForKernels(component, view);
+  if (for_kernels) {
+    if constexpr (kHasStart<T>) {
+      addAlong(rayQuery<T>(component, kInf, mask));
+    } else {
+      // A line is two rays.
+      addAlong(rayQuery<Ray>(component, kInf, mask));
+      const DoubleComponent back = doubleComponent(Line{linear.origin, -linear.direction});
+      addAlong(rayQuery<Ray>(back, kInf, mask));
+    }
+  }
+  forEachOther(tree, for_kernels, boxes.size(), mask, [&](std::size_t i) {
+    if (!enclose<T>(component, prepared[i]).isMiss()) {
+      maybe.push_back(static_cast<std::uint32_t>(i));
     }
     return true;
   });
+  std::sort(maybe.begin(), maybe.end());
+  maybe.erase(std::unique(maybe.begin(), maybe.end()), maybe.end());
+
+  std::vector<BoxIntersection> found;
+  for (const std::uint32_t i : maybe) {
+    BoxIntersection candidate{
+        i, std::visit([&](const auto& b) { return findIntersection(linear, b); }, boxes[i])};
+    if (candidate.intersection.num_points > 0) {
+      found.push_back(candidate);
+    }
+  }
   // Rounding keeps the order, but for the parameters that it makes equal. Found in order of the
   // index, ties stay in it.
   std::stable_sort(found.begin(), found.end(),
@@ -51,18 +84,16 @@ std::vector<BoxIntersection> findAllOf(const std::vector<Box>& boxes,
   return found;
 }
 
-}  // namespace
-
 std::vector<BoxIntersection> Scene::findAll(const Line& line, const BoxMask* mask) const {
-  return findAllOf(impl_->boxes, impl_->simplest, impl_->prepared, line, mask);
+  return impl_->findAll(line, mask);
 }
 
 std::vector<BoxIntersection> Scene::findAll(const Ray& ray, const BoxMask* mask) const {
-  return findAllOf(impl_->boxes, impl_->simplest, impl_->prepared, ray, mask);
+  return impl_->findAll(ray, mask);
 }
 
 std::vector<BoxIntersection> Scene::findAll(const Segment& segment, const BoxMask* mask) const {
-  return findAllOf(impl_->boxes, impl_->simplest, impl_->prepared, segment, mask);
+  return impl_->findAll(segment, mask);
 }
 
 }  // namespace box_query

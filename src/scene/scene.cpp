@@ -18,16 +18,6 @@ void BoxMask::set(std::size_t box, bool look) noexcept {
   words_[box / 64] = look ? words_[box / 64] | bit : words_[box / 64] & ~bit;
 }
 
-PreparedBox::PreparedBox(const AlignedBox& box)
-    : kind(isModerate(box) ? Kind::kAligned : Kind::kExactOnly),
-      compact(isCompact(box)),
-      aligned(doubleSlabs(box)) {}
-
-PreparedBox::PreparedBox(const OrientedBox& box)
-    : kind(isModerate(box) ? Kind::kOriented : Kind::kExactOnly),
-      compact(isCompact(box)),
-      oriented(doubleSlabs(box)) {}
-
 Scene::Impl::Impl(std::vector<Box> all) : boxes(std::move(all)), simplest(boxes), spheres(boxes) {
   prepared.reserve(boxes.size());
   for (Box& box : simplest) {
@@ -38,6 +28,8 @@ Scene::Impl::Impl(std::vector<Box> all) : boxes(std::move(all)), simplest(boxes)
     }
     prepared.push_back(std::visit([](const auto& b) { return PreparedBox(b); }, box));
   }
+  tree = BoxTree(prepared);
+  view = tree.view();
 }
 
 Scene::Scene() : Scene(std::vector<Box>()) {}

@@ -3,7 +3,10 @@
 
 #include "geometry/aligned_form.h"
 #include "geometry/prepared_box.h"
+#include "kernels/kernels.h"
 #include "scene/bounding_spheres.h"
+#include "scene/box_tree.h"
+#include "scene/prepared_boxes.h"
 
 #include <box_query/scene.h>
 
@@ -11,21 +14,8 @@
 
 namespace box_query {
 
-/// A box of a Scene as the filter sees it, oriented or aligned.
-struct PreparedBox {
-  enum class Kind { kAligned, kOriented, kExactOnly };
-
-  explicit PreparedBox(const AlignedBox& box);
-  explicit PreparedBox(const OrientedBox& box);
-
-  /// kExactOnly: not moderate.
-  Kind kind;
-  bool compact;
-  union {
-    AlignedSlabs aligned;
-    OrientedSlabs oriented;
-  };
-};
+template <typename T>
+class FirstEntered;
 
 struct Scene::Impl {
   explicit Impl(std::vector<Box> all);
@@ -33,12 +23,30 @@ struct Scene::Impl {
   /// firstBlockage() for radius 0.
   Blockage firstMet(const Segment& segment, const BoxMask* mask) const;
 
+  /// Offers all boxes that may be the first, entered at a parameter of at most `t_end`.
+  template <typename T>
+  void findFirst(FirstEntered<T>& first, const DoubleComponent& component, double t_end,
+                 const BoxMask* mask) const;
+
+  /// Whether any box is met, entered at a parameter that is certainly allowed up to `t_inside`, and
+  /// certainly not beyond `t_end`.
+  /// @param decide decide(index) says so exactly, where doubles cannot
+  template <typename T, typename Decide>
+  bool meetsAny(const T& linear, const DoubleComponent& component, double t_inside, double t_end,
+                const BoxMask* mask, Decide&& decide) const;
+
+  template <typename T>
+  std::vector<BoxIntersection> findAll(const T& linear, const BoxMask* mask) const;
+
   std::vector<Box> boxes;
   std::vector<PreparedBox> prepared;
   /// The boxes with those oriented ones that are aligned, exactly, in that form: what queries are
   /// solved against. Only faces and normals need the box itself.
   std::vector<Box> simplest;
   BoundingSpheres spheres;
+  BoxTree tree;
+  kernels::SceneView view;
+  const kernels::Kernels& kernels = kernels::active();
 };
 
 /// Calls visit(index) for every box that the mask looks at, in order of the index, until it returns

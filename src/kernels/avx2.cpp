@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels for CPUs with AVX2 and FMA.
+#include "kernels/kernels.h"
+
+#if defined(__x86_64__)
+#include "exact/bounds.h"
+#include "exact/float_model.h"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include <immintrin.h>
+
+// Everything from here on is compiled for that CPU, and nothing before: no function that other
+// files share.
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx2,fma,bmi,lzcnt,popcnt"))), \
+                             apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2,fma,bmi,lzcnt,popcnt")
+#endif
+
+namespace box_query::kernels {
+namespace avx2 {
+// Each needs those before it.
+// clang-format off
+#include "kernels/generic/lanes_x86.h"
+#include "kernels/generic/lanes_avx2.h"
+#include "kernels/generic/ray.h"
+#include "kernels/generic/box_times.h"
+#include "kernels/generic/traverse.h"
+#include "kernels/generic/ray_queries.h"
+// clang-format on
+}  // namespace avx2
+
+const Kernels kAvx2 = {"avx2", avx2::closest, avx2::any, avx2::all};
+
+}  // namespace box_query::kernels
+
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#endif

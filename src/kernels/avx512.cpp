@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels for CPUs with AVX-512 (F, VL, DQ).
+#include "kernels/kernels.h"
+
+#if defined(__x86_64__)
+#include "exact/bounds.h"
+#include "exact/float_model.h"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include <immintrin.h>
+
+// Everything from here on is compiled for that CPU, and nothing before: no function that other
+// files share.
+#if defined(__clang__)
+#pragma clang attribute push(                                                       \
+    __attribute__((target("avx2,fma,bmi,lzcnt,popcnt,avx512f,avx512vl,avx512dq"))), \
+    apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2,fma,bmi,lzcnt,popcnt,avx512f,avx512vl,avx512dq")
+#endif
+
+namespace box_query::kernels {
+namespace avx512 {
+// Each needs those before it.
+// clang-format off
+#include "kernels/generic/lanes_x86.h"
+#include "kernels/generic/lanes_avx512.h"
+#include "kernels/generic/ray.h"
+#include "kernels/generic/box_times.h"
+#include "kernels/generic/traverse.h"
+#include "kernels/generic/ray_queries.h"
+// clang-format on
+}  // namespace avx512
+
+const Kernels kAvx512 = {"avx512", avx512::closest, avx512::any, avx512::all};
+
+}  // namespace box_query::kernels
+
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#endif

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sixteen floats in an AVX-512 register. Included in a target region.
+
+struct Float16 {
+  __m512 v;
+};
+
+/// GCC 12 warns of uninitialised registers in its own unmasked minimum and maximum (its bug
+/// 105593); with a full mask it makes the same instructions.
+constexpr __mmask16 kAllLanes = 0xffff;
+
+static inline Float16 load16(const float* p) {
+  return {_mm512_load_ps(p)};
+}
+static inline Float16 all16(float x) {
+  return {_mm512_set1_ps(x)};
+}
+static inline void store16(float* p, Float16 a) {
+  _mm512_storeu_ps(p, a.v);
+}
+/// a * b + c, rounded once or twice.
+static inline Float16 multiplyAdd(Float16 a, Float16 b, Float16 c) {
+  return {_mm512_fmadd_ps(a.v, b.v, c.v)};
+}
+static inline Float16 operator*(Float16 a, Float16 b) {
+  return {_mm512_mul_ps(a.v, b.v)};
+}
+static inline Float16 larger(Float16 a, Float16 b) {
+  return {_mm512_maskz_max_ps(kAllLanes, a.v, b.v)};
+}
+static inline Float16 smaller(Float16 a, Float16 b) {
+  return {_mm512_maskz_min_ps(kAllLanes, a.v, b.v)};
+}
+/// A bit for every lane in which a <= b.
+static inline std::uint32_t notAbove(Float16 a, Float16 b) {
+  return _mm512_cmp_ps_mask(a.v, b.v, _CMP_LE_OQ);
+}
+
+/// Appends `base` + slot for every slot of `bits`. Up to kSlots entries behind the last one are
+/// written to.
+static inline int append(std::uint32_t bits, std::uint32_t base, std::uint32_t* list, int count) {
+  const __m512i slots = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  const __m512i all = _mm512_add_epi32(slots, _mm512_set1_epi32(static_cast<int>(base)));
+  // In a register first: compressing straight to memory is slow on some CPUs.
+  _mm512_storeu_si512(list + count, _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), all));
+  return count + __builtin_popcount(bits);
+}
+/// The same with where each is entered.
+static inline int append(std::uint32_t bits, std::uint32_t base, Float16 near, std::uint32_t* list,
+                         float* nears, int count) {
+  _mm512_storeu_ps(nears + count, _mm512_maskz_compress_ps(static_cast<__mmask16>(bits), near.v));
+  return append(bits, base, list, count);
+}

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Four doubles and sixteen floats as arrays: what the compiler makes of them is up to it.
+
+struct Double4 {
+  double v[4];
+};
+
+template <typename Function>
+static inline Double4 each4(Function&& f) {
+  return {{f(0), f(1), f(2), f(3)}};
+}
+static inline Double4 load4(const double* p) {
+  return {{p[0], p[1], p[2], p[3]}};
+}
+static inline Double4 all4(double x) {
+  return {{x, x, x, x}};
+}
+/// The three numbers at p, and 0.
+static inline Double4 lanes4(const double* p) {
+  return {{p[0], p[1], p[2], 0.0}};
+}
+static inline Double4 operator+(const Double4& a, const Double4& b) {
+  return each4([&](int i) { return a.v[i] + b.v[i]; });
+}
+static inline Double4 operator-(const Double4& a, const Double4& b) {
+  return each4([&](int i) { return a.v[i] - b.v[i]; });
+}
+static inline Double4 operator*(const Double4& a, const Double4& b) {
+  return each4([&](int i) { return a.v[i] * b.v[i]; });
+}
+static inline Double4 operator/(const Double4& a, const Double4& b) {
+  return each4([&](int i) { return a.v[i] / b.v[i]; });
+}
+/// a * b + c
+static inline Double4 fused(const Double4& a, const Double4& b, const Double4& c) {
+  return a * b + c;
+}
+/// c - a * b
+static inline Double4 fusedNegative(const Double4& a, const Double4& b, const Double4& c) {
+  return c - a * b;
+}
+static inline Double4 magnitude(const Double4& a) {
+  return each4([&](int i) { return std::fabs(a.v[i]); });
+}
+/// max(|a|, least) with the sign of a.
+static inline Double4 awayFromZero(const Double4& a, double least) {
+  return each4([&](int i) {
+    const double size = std::fabs(a.v[i]);
+    return std::copysign(size > least ? size : least, a.v[i]);
+  });
+}
+/// `other` where a is NaN.
+static inline Double4 orIfNan(const Double4& a, double other) {
+  return each4([&](int i) { return std::isnan(a.v[i]) ? other : a.v[i]; });
+}
+/// Lanes of b where `negative` is, of a elsewhere.
+static inline Double4 choose(const Double4& a, const Double4& b, const Double4& negative) {
+  return each4([&](int i) { return std::signbit(negative.v[i]) ? b.v[i] : a.v[i]; });
+}
+static inline Double4 signs4(bool x, bool y, bool z) {
+  return {{x ? -0.0 : 0.0, y ? -0.0 : 0.0, z ? -0.0 : 0.0, 0.0}};
+}
+
+struct Pair {
+  double first;
+  double second;
+};
+static inline double largerOf(double a, double b) {
+  return a > b ? a : b;
+}
+static inline double smallerOf(double a, double b) {
+  return a < b ? a : b;
+}
+/// The largest of the first three lanes, of a and of b.
+static inline Pair largest3(const Double4& a, const Double4& b) {
+  return {largerOf(largerOf(a.v[0], a.v[1]), a.v[2]), largerOf(largerOf(b.v[0], b.v[1]), b.v[2])};
+}
+static inline Pair smallest3(const Double4& a, const Double4& b) {
+  return {smallerOf(smallerOf(a.v[0], a.v[1]), a.v[2]),
+          smallerOf(smallerOf(b.v[0], b.v[1]), b.v[2])};
+}
+static inline void prefetch(const void* p) {
+  __builtin_prefetch(p);
+}
+static inline int lowestBit(std::uint32_t bits) {
+  return __builtin_ctz(bits);
+}
+
+struct Float16 {
+  float v[kSlots];
+};
+
+template <typename Function>
+static inline Float16 each16(Function&& f) {
+  Float16 result;
+  for (int i = 0; i < kSlots; ++i) {
+    result.v[i] = f(i);
+  }
+  return result;
+}
+static inline Float16 load16(const float* p) {
+  return each16([&](int i) { return p[i]; });
+}
+static inline Float16 all16(float x) {
+  return each16([&](int) { return x; });
+}
+static inline void store16(float* p, const Float16& a) {
+  for (int i = 0; i < kSlots; ++i) {
+    p[i] = a.v[i];
+  }
+}
+/// a * b + c, rounded once or twice.
+static inline Float16 multiplyAdd(const Float16& a, const Float16& b, const Float16& c) {
+  return each16([&](int i) { return a.v[i] * b.v[i] + c.v[i]; });
+}
+static inline Float16 operator*(const Float16& a, const Float16& b) {
+  return each16([&](int i) { return a.v[i] * b.v[i]; });
+}
+static inline Float16 larger(const Float16& a, const Float16& b) {
+  return each16([&](int i) { return a.v[i] > b.v[i] ? a.v[i] : b.v[i]; });
+}
+static inline Float16 smaller(const Float16& a, const Float16& b) {
+  return each16([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; });
+}
+/// A bit for every lane in which a <= b.
+static inline std::uint32_t notAbove(const Float16& a, const Float16& b) {
+  std::uint32_t bits = 0;
+  for (int i = 0; i < kSlots; ++i) {
+    bits |= (a.v[i] <= b.v[i] ? 1U : 0U) << i;
+  }
+  return bits;
+}
+
+/// Appends `base` + slot for every slot of `bits`.
+static inline int append(std::uint32_t bits, std::uint32_t base, std::uint32_t* list, int count) {
+  for (; bits != 0; bits &= bits - 1) {
+    list[count++] = base + static_cast<std::uint32_t>(lowestBit(bits));
+  }
+  return count;
+}
+/// The same with where each is entered.
+static inline int append(std::uint32_t bits, std::uint32_t base, const Float16& near,
+                         std::uint32_t* list, float* nears, int count) {
+  for (; bits != 0; bits &= bits - 1) {
+    const int slot = lowestBit(bits);
+    nears[count] = near.v[slot];
+    list[count++] = base + static_cast<std::uint32_t>(slot);
+  }
+  return count;
+}

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Four doubles in an AVX register. Included in a target region.
+
+struct Double4 {
+  __m256d v;
+};
+
+static inline Double4 load4(const double* p) {
+  return {_mm256_load_pd(p)};
+}
+static inline Double4 all4(double x) {
+  return {_mm256_set1_pd(x)};
+}
+/// The three numbers at p, and 0.
+static inline Double4 lanes4(const double* p) {
+  return {_mm256_setr_pd(p[0], p[1], p[2], 0.0)};
+}
+static inline Double4 operator+(Double4 a, Double4 b) {
+  return {_mm256_add_pd(a.v, b.v)};
+}
+static inline Double4 operator-(Double4 a, Double4 b) {
+  return {_mm256_sub_pd(a.v, b.v)};
+}
+static inline Double4 operator*(Double4 a, Double4 b) {
+  return {_mm256_mul_pd(a.v, b.v)};
+}
+static inline Double4 operator/(Double4 a, Double4 b) {
+  return {_mm256_div_pd(a.v, b.v)};
+}
+/// a * b + c
+static inline Double4 fused(Double4 a, Double4 b, Double4 c) {
+  return {_mm256_fmadd_pd(a.v, b.v, c.v)};
+}
+/// c - a * b
+static inline Double4 fusedNegative(Double4 a, Double4 b, Double4 c) {
+  return {_mm256_fnmadd_pd(a.v, b.v, c.v)};
+}
+static inline Double4 magnitude(Double4 a) {
+  return {_mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v)};
+}
+/// max(|a|, least) with the sign of a.
+static inline Double4 awayFromZero(Double4 a, double least) {
+  const __m256d sign_bit = _mm256_set1_pd(-0.0);
+  const __m256d size = _mm256_max_pd(_mm256_andnot_pd(sign_bit, a.v), _mm256_set1_pd(least));
+  return {_mm256_or_pd(size, _mm256_and_pd(a.v, sign_bit))};
+}
+/// `other` where a is NaN.
+static inline Double4 orIfNan(Double4 a, double other) {
+  return {_mm256_blendv_pd(a.v, _mm256_set1_pd(other), _mm256_cmp_pd(a.v, a.v, _CMP_UNORD_Q))};
+}
+/// Lanes of b where `negative` is, of a elsewhere.
+static inline Double4 choose(Double4 a, Double4 b, Double4 negative) {
+  return {_mm256_blendv_pd(a.v, b.v, negative.v)};
+}
+static inline Double4 signs4(bool x, bool y, bool z) {
+  return {_mm256_setr_pd(x ? -0.0 : 0.0, y ? -0.0 : 0.0, z ? -0.0 : 0.0, 0.0)};
+}
+
+struct Pair {
+  double first;
+  double second;
+};
+/// The largest of the first three lanes, of a and of b.
+static inline Pair largest3(Double4 a, Double4 b) {
+  const __m256d even = _mm256_unpacklo_pd(a.v, b.v);
+  const __m256d odd = _mm256_unpackhi_pd(a.v, b.v);
+  const __m128d m =
+      _mm_max_pd(_mm_max_pd(_mm256_castpd256_pd128(even), _mm256_castpd256_pd128(odd)),
+                 _mm256_extractf128_pd(even, 1));
+  return {_mm_cvtsd_f64(m), _mm_cvtsd_f64(_mm_unpackhi_pd(m, m))};
+}
+static inline Pair smallest3(Double4 a, Double4 b) {
+  const __m256d even = _mm256_unpacklo_pd(a.v, b.v);
+  const __m256d odd = _mm256_unpackhi_pd(a.v, b.v);
+  const __m128d m =
+      _mm_min_pd(_mm_min_pd(_mm256_castpd256_pd128(even), _mm256_castpd256_pd128(odd)),
+                 _mm256_extractf128_pd(even, 1));
+  return {_mm_cvtsd_f64(m), _mm_cvtsd_f64(_mm_unpackhi_pd(m, m))};
+}
+static inline void prefetch(const void* p) {
+  _mm_prefetch(static_cast<const char*>(p), _MM_HINT_T0);
+}
+static inline int lowestBit(std::uint32_t bits) {
+  return __builtin_ctz(bits);
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Many boxes at once, once for every instruction set. Which is used never changes an answer: all
+/// they say is certain, and what they leave open is decided exactly.
+#pragma once
+
+#include "kernels/scene_view.h"
+
+namespace box_query::kernels {
+
+/// The functions of one instruction set.
+struct Kernels {
+  const char* name;
+
+  /// Finds all boxes that may be the first that is entered: whatever is not left in `found`, or
+  /// was not taken, is certainly not entered before the one of them that is.
+  void (*closest)(const SceneView&, const RayQuery&, Found& found, Take take, void* context);
+
+  /// Whether a box is certainly met at a parameter of at most `t_inside`. If not, those that may
+  /// be are left in `found`, or were taken.
+  bool (*any)(const SceneView&, const RayQuery&, double t_inside, Found& found, Take take,
+              void* context);
+
+  /// Finds all boxes that may be met.
+  void (*all)(const SceneView&, const RayQuery&, Found& found, Take take, void* context);
+};
+
+extern const Kernels kPortable;
+#if defined(__x86_64__)
+extern const Kernels kAvx2;
+extern const Kernels kAvx512;
+#endif
+
+/// Those in use: the widest that the CPU has, or the one that the environment variable
+/// BOX_QUERY_KERNEL names ("portable", "avx2", "avx512") if the CPU has it. Chosen at the first
+/// call.
+const Kernels& active();
+
+/// Whether BOX_QUERY_KERNEL named something that is not to be had here.
+bool isChoiceRefused();
+
+/// The table of that name, if the CPU has it, or null.
+const Kernels* byName(const char* name);
+
+}  // namespace box_query::kernels

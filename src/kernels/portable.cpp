@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels for every CPU.
+#include "exact/bounds.h"
+#include "exact/float_model.h"
+#include "kernels/kernels.h"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace box_query::kernels {
+namespace portable {
+// Each needs those before it.
+// clang-format off
+#include "kernels/generic/lanes_portable.h"
+#include "kernels/generic/ray.h"
+#include "kernels/generic/box_times.h"
+#include "kernels/generic/traverse.h"
+#include "kernels/generic/ray_queries.h"
+// clang-format on
+}  // namespace portable
+
+const Kernels kPortable = {"portable", portable::closest, portable::any, portable::all};
+
+}  // namespace box_query::kernels

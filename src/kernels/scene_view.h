@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What the kernels see of a scene: plain numbers behind plain pointers, no Eigen, no containers,
+/// so that code for one instruction set shares no inline function with code for another.
+///
+/// A tree of fixed depth and sixteen children a node. Its planes are floats, relative to `center`
+/// and rounded outward: they only say where a box cannot be. What is certain about a box its
+/// record in double says, and what that leaves open is the caller's.
+#pragma once
+
+#include <cstdint>
+
+namespace box_query::kernels {
+
+constexpr int kSlots = 16;
+constexpr int kMaxLevels = 7;
+
+/// Bounds of sixteen boxes, or of sixteen nodes of the level below. An empty slot is nowhere: its
+/// minimum is +inf, its maximum -inf.
+struct alignas(64) Bounds {
+  float plane[2][3][kSlots];  ///< [minimum or maximum][axis][slot]
+};
+
+/// A box in double, four lanes wide: three axes, and what belongs to none of them.
+struct alignas(64) BoxRecord {
+  /// Oriented: column j has coordinate j of the three box axes and of the center. Aligned: column
+  /// 0 has the minimum, column 1 the maximum.
+  double column[3][4];
+  /// Half extents, and their padded sum (see geometry/slabs.h); negative for an aligned box.
+  double extent[4];
+
+  bool isAligned() const { return extent[3] < 0.0; }
+};
+
+/// Nodes of one level: the children of node n are first[n], first[n] + 1, ... of the level below,
+/// of the lowest level records.
+struct Level {
+  const Bounds* bounds;
+  const std::uint32_t* first;
+  std::uint32_t nodes;
+};
+
+struct SceneView {
+  /// Level 0 is the lowest. All nodes of the last one are roots.
+  Level levels[kMaxLevels];
+  int depth;  ///< how many levels there are; 0: no box is in the tree
+  const BoxRecord* records;
+  /// Number of the box in the scene.
+  const std::uint32_t* box_of_record;
+  double center[3];
+  /// Around all boxes, relative to the center: [minimum or maximum][axis].
+  float around[2][3];
+  /// How far a ray goes in the mean before it meets a box.
+  double mean_free_path;
+};
+
+/// The part of a component that a query is about: origin + t * direction, t in [0, t_end].
+///
+/// @pre Every number is moderate as DoubleComponent has it, |origin - center| <= kFarthestOrigin.
+struct RayQuery {
+  double origin[3];
+  double direction[3];
+  double inverse[3];  ///< +inf where the direction is zero
+  bool negative[3];
+  /// The component's own end: 1 of a segment, +inf of a ray.
+  double own_end;
+  /// A box that is certainly entered beyond it is none.
+  double t_end;
+  /// Boxes to look at, a bit each by their number in the scene, or null.
+  const std::uint64_t* mask;
+};
+
+constexpr double kFarthestOrigin = 0x1p60;
+
+/// A box that may be met, and where: enter_lo <= entry <= enter_hi if it is.
+struct Candidate {
+  std::uint32_t box;
+  bool certain;  ///< that it is met
+  double enter_lo;
+  double enter_hi;
+  double exit_hi;
+};
+
+/// What was not skipped.
+struct Work {
+  std::uint64_t nodes = 0;  ///< whose sixteen slots were compared
+  std::uint64_t boxes = 0;  ///< compared in double
+};
+
+/// What a query found out. More candidates than it holds go to the caller in portions.
+struct Found {
+  static constexpr int kCapacity = 64;
+  Candidate candidates[kCapacity];
+  int count;
+  Work work;
+};
+
+/// Takes the candidates of a full list; the query goes on with an empty one.
+/// @return of the closest: an upper bound of the parameter where the first of them is entered, as
+/// far as the caller knows; of the others: negative to end the query
+using Take = double (*)(void* context, const Found& found);
+
+}  // namespace box_query::kernels

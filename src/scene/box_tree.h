@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Where the boxes of a scene are: the tree that the kernels go down.
+#pragma once
+
+#include "kernels/scene_view.h"
+#include "scene/prepared_boxes.h"
+
+#include <box_query/geometry.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace box_query {
+
+/// A tree of sixteen children a node, all leaves at the same depth; up to 128 boxes are one list.
+///
+/// Built from the top by the surface area heuristic (J. Goldsmith and J. Salmon, "Automatic
+/// Creation of Object Hierarchies for Ray Tracing", 1987; binned after I. Wald, "On fast
+/// Construction of SAH-based Bounding Volume Hierarchies", 2007), where the cost of a part is its
+/// area times the leaves that it fills: a leaf costs the same whatever is in it.
+class BoxTree {
+ public:
+  BoxTree() = default;
+  explicit BoxTree(const std::vector<PreparedBox>& boxes);
+
+  /// Valid as long as this tree is neither changed nor moved.
+  kernels::SceneView view() const;
+
+  /// Boxes whose numbers are out of the range of the kernels, by their number.
+  const std::vector<std::uint32_t>& left_out() const { return left_out_; }
+
+ private:
+  friend class TreeBuilder;
+
+  struct Nodes {
+    std::vector<kernels::Bounds> bounds;
+    std::vector<std::uint32_t> first;
+  };
+
+  std::vector<Nodes> levels_;
+  std::vector<kernels::BoxRecord> records_;
+  std::vector<std::uint32_t> box_of_record_;
+  std::vector<std::uint32_t> left_out_;
+  double center_[3] = {0.0, 0.0, 0.0};
+  float around_[2][3] = {};
+  double mean_free_path_ = 0.0;
+};
+
+}  // namespace box_query

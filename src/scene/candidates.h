@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// What a kernel leaves to the stages behind it.
+#pragma once
+
+#include "exact/clip.h"
+#include "geometry/slabs.h"
+#include "kernels/kernels.h"
+#include "scene/scene_impl.h"
+
+#include <box_query/scene.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace box_query {
+
+/// Whether the kernels may take a component.
+inline bool isForKernels(const DoubleComponent& component, const kernels::SceneView& view) {
+  bool near = component.moderate;
+  for (int i = 0; i < 3; ++i) {
+    near = near && std::fabs(component.origin[i] - view.center[i]) <= kernels::kFarthestOrigin;
+  }
+  return near;
+}
+
+/// @param t_end boxes that are certainly entered beyond it are none
+template <typename T>
+kernels::RayQuery rayQuery(const DoubleComponent& component, double t_end, const BoxMask* mask) {
+  static_assert(kHasStart<T>, "a line is two rays");
+  kernels::RayQuery query;
+  for (int i = 0; i < 3; ++i) {
+    query.origin[i] = component.origin[i];
+    query.direction[i] = component.direction[i];
+    query.inverse[i] = component.inverse[i];
+    query.negative[i] = component.negative[i];
+  }
+  query.own_end = kHasEnd<T> ? 1.0 : std::numeric_limits<double>::infinity();
+  query.t_end = std::min(t_end, query.own_end);
+  query.mask = mask != nullptr ? mask->words() : nullptr;
+  return query;
+}
+
+/// Calls visit(candidate) for each box in `found` once, in order of their numbers, until it returns
+/// false.
+template <typename Visit>
+bool forEachCandidate(const kernels::Found& found, Visit&& visit) {
+  if (found.count == 1) {
+    return visit(found.candidates[0]);
+  }
+  kernels::Candidate sorted[kernels::Found::kCapacity];
+  const auto end = std::copy(found.candidates, found.candidates + found.count, sorted);
+  std::sort(sorted, end, [](const auto& a, const auto& b) { return a.box < b.box; });
+  for (const auto* c = sorted; c != end; ++c) {
+    if ((c == sorted || c->box != c[-1].box) && !visit(*c)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// A box that the kernels may not take, or no component, as a candidate.
+template <typename T>
+kernels::Candidate candidateOf(const DoubleComponent& component, const PreparedBox& box,
+                               std::size_t index) {
+  const Enclosure e = enclose<T>(component, box);
+  return {static_cast<std::uint32_t>(index), e.isHit(), e.enter_lo, e.enter_hi, e.exit_hi};
+}
+
+/// Calls visit(index) for each box that the kernels did not look at, in order of the index, until
+/// it returns false: those that they may not take, or all where they may not take the component.
+template <typename Visit>
+void forEachOther(const BoxTree& tree, bool for_kernels, std::size_t size, const BoxMask* mask,
+                  Visit&& visit) {
+  if (!for_kernels) {
+    forEachBox(size, mask, visit);
+    return;
+  }
+  for (const std::uint32_t i : tree.left_out()) {
+    if ((mask == nullptr || (*mask)[i]) && !visit(i)) {
+      return;
+    }
+  }
+}
+
+}  // namespace box_query

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "geometry/prepared_box.h"
+
+#include <box_query/geometry.h>
+
+namespace box_query {
+
+/// A box of a Scene as the filter sees it, oriented or aligned.
+struct PreparedBox {
+  enum class Kind { kAligned, kOriented, kExactOnly };
+
+  explicit PreparedBox(const AlignedBox& box)
+      : kind(isModerate(box) ? Kind::kAligned : Kind::kExactOnly),
+        compact(isCompact(box)),
+        aligned(doubleSlabs(box)) {}
+
+  explicit PreparedBox(const OrientedBox& box)
+      : kind(isModerate(box) ? Kind::kOriented : Kind::kExactOnly),
+        compact(isCompact(box)),
+        oriented(doubleSlabs(box)) {}
+
+  /// kExactOnly: not moderate.
+  Kind kind;
+  bool compact;
+  union {
+    AlignedSlabs aligned;
+    OrientedSlabs oriented;
+  };
+};
+
+}  // namespace box_query
