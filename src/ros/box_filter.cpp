@@ -2,8 +2,11 @@
 #include "ros/box_filter.h"
 
 #include <algorithm>
+#include <limits>
+#include <set>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 #include <ros/names.h>
 
@@ -12,15 +15,27 @@ namespace {
 
 using Names = std::vector<BoxName>;
 
-/// Sets the boxes of `snapshot` whose names are within [lowest, highest] in the order (topic, ns,
-/// id), in which they are sorted.
-void setRange(const Names& names, const BoxName& lowest, const BoxName& highest, bool look,
-              BoxMask& mask) {
+BoxName lowestOf(const std::string& topic, const std::string& ns) {
+  return {topic, ns, std::numeric_limits<std::int64_t>::min(), ""};
+}
+BoxName highestOf(const std::string& topic, const std::string& ns) {
+  return {topic, ns, std::numeric_limits<std::int64_t>::max(), ""};
+}
+
+/// The names within [lowest, highest] in the order (topic, ns, id), in which they are sorted.
+std::pair<Names::const_iterator, Names::const_iterator> rangeOf(const Names& names,
+                                                                const BoxName& lowest,
+                                                                const BoxName& highest) {
   const auto before = [](const BoxName& a, const BoxName& b) {
     return std::tie(a.topic, a.ns, a.id) < std::tie(b.topic, b.ns, b.id);
   };
   const auto begin = std::lower_bound(names.begin(), names.end(), lowest, before);
-  const auto end = std::upper_bound(begin, names.end(), highest, before);
+  return {begin, std::upper_bound(begin, names.end(), highest, before)};
+}
+
+void setRange(const Names& names, const BoxName& lowest, const BoxName& highest, bool look,
+              BoxMask& mask) {
+  const auto [begin, end] = rangeOf(names, lowest, highest);
   for (auto name = begin; name != end; ++name) {
     mask.set(static_cast<std::size_t>(name - names.begin()), look);
   }
@@ -36,6 +51,19 @@ std::vector<std::string> topicsOf(const Names& names) {
         [](const std::string& topic, const BoxName& other) { return topic < other.topic; });
   }
   return topics;
+}
+
+std::set<std::string> namespacesOf(const Names& names) {
+  std::set<std::string> namespaces;
+  auto name = names.begin();
+  while (name != names.end()) {
+    namespaces.insert(name->ns);
+    name =
+        std::upper_bound(name, names.end(), *name, [](const BoxName& last, const BoxName& other) {
+          return std::tie(last.topic, last.ns) < std::tie(other.topic, other.ns);
+        });
+  }
+  return namespaces;
 }
 
 /// Answers name topics in full; a request may name them as the node's parameter does.
@@ -61,6 +89,37 @@ void check(const BoxFilter& filter) {
   }
 }
 
+std::string unknownNamespace(const BoxFilter& filter, const Snapshot& snapshot) {
+  if (filter.namespaces.empty()) {
+    return "";
+  }
+  const std::vector<std::string> topics = topicsOf(snapshot.names);
+  const auto unknown =
+      std::find_if(filter.namespaces.begin(), filter.namespaces.end(), [&](const std::string& ns) {
+        return std::none_of(topics.begin(), topics.end(), [&](const std::string& topic) {
+          const auto range = rangeOf(snapshot.names, lowestOf(topic, ns), highestOf(topic, ns));
+          return range.first != range.second;
+        });
+      });
+  if (unknown == filter.namespaces.end()) {
+    return "";
+  }
+  const std::set<std::string> known = namespacesOf(snapshot.names);
+  constexpr std::size_t kListed = 10;
+  std::string list;
+  std::size_t listed = 0;
+  for (auto ns = known.begin(); ns != known.end() && listed < kListed; ++ns, ++listed) {
+    list += (listed > 0 ? ", '" : "'") + *ns + "'";
+  }
+  if (known.size() > listed) {
+    list += " and " + std::to_string(known.size() - listed) + " more";
+  }
+  return "No box has the namespace '" + *unknown + "': " +
+         (known.empty()
+              ? "there are no boxes."
+              : "there are " + list + ". Correct it, unless none is meant to be there now.");
+}
+
 std::optional<BoxMask> maskOf(const BoxFilter& filter, const Snapshot& snapshot) {
   if (filter.namespaces.empty() && filter.ignore_ids.empty()) {
     return std::nullopt;
@@ -70,8 +129,7 @@ std::optional<BoxMask> maskOf(const BoxFilter& filter, const Snapshot& snapshot)
   BoxMask mask(names.size(), filter.namespaces.empty());
   for (const std::string& topic : topics) {
     for (const std::string& ns : filter.namespaces) {
-      setRange(names, {topic, ns, std::numeric_limits<std::int64_t>::min(), ""},
-               {topic, ns, std::numeric_limits<std::int64_t>::max(), ""}, true, mask);
+      setRange(names, lowestOf(topic, ns), highestOf(topic, ns), true, mask);
     }
   }
   for (std::size_t i = 0; i < filter.ignore_ids.size(); ++i) {

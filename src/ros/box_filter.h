@@ -30,6 +30,11 @@ struct BoxFilter {
 /// @throws std::invalid_argument if the arrays of ignored boxes do not fit together.
 void check(const BoxFilter& filter);
 
+/// A sentence that names the first of the filter's namespaces that no box of the snapshot has, and
+/// those that there are; empty if every one has a box. Nothing of such a name need be there, so
+/// that it is no error; but who mistypes a name is told that all is clear.
+std::string unknownNamespace(const BoxFilter& filter, const Snapshot& snapshot);
+
 /// The boxes of the snapshot that pass, or nothing where nothing is filtered. Names that no box has
 /// are no error.
 /// @pre check(filter)

@@ -2,6 +2,7 @@
 #include "ros/server.h"
 
 #include "ros/answers.h"
+#include "ros/box_filter.h"
 #include "ros/box_source.h"
 
 #include <stdexcept>
@@ -69,6 +70,7 @@ void Server::answerNow(const Request& request, Response& response) {
   const SnapshotPtr snapshot = monitor_.currentScene();
   Context context = {*snapshot, ros::Time::now(), frame, markers_.drawing()};
   answer(request, context, response);
+  response.message = unknownNamespace(BoxFilter(request), *snapshot);
   markers_.show(context.drawing.take());
 }
 

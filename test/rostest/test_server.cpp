@@ -202,9 +202,17 @@ TEST_F(Server, Filters) {
   EXPECT_EQ(cast(request).box_id % 2, 1);
   request.namespaces = {"even"};
   EXPECT_NE(cast(request).box_id % 2, 1);
-  request.namespaces = {"nobody"};
-  EXPECT_TRUE(cast(request).success);
-  EXPECT_FALSE(cast(request).hit);
+  EXPECT_EQ(cast(request).message, "");
+}
+
+TEST_F(Server, WarnsOfANamespaceThatNoBoxHas) {
+  CheckSegmentRequest request;
+  request.header.frame_id = "map";
+  request.namespaces = {"evn"};
+  const CheckSegmentResponse response = call<CheckSegment>("check_segment", request);
+  EXPECT_TRUE(response.success && response.clear) << "there may be no such box now";
+  EXPECT_NE(response.message.find("'evn': there are 'even', 'odd'."), std::string::npos)
+      << response.message;
 }
 
 TEST_F(Server, AnswersInAFrameOfStaticTf) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "ros/box_filter.h"
 #include "unit/answer_fixture.h"
 
 #include <limits>
@@ -92,6 +93,38 @@ TEST(CastRay, FiltersByNamespaceAndByBox) {
   EXPECT_EQ(first(request), 1.5);
   request.ignore_ids = {17, 18};
   EXPECT_EQ(first(request), 1.5) << "boxes that are not there are no error";
+}
+
+std::string unknownAmong(const std::vector<std::string>& namespaces, const Snapshot& snapshot) {
+  CastRayRequest request;
+  request.namespaces = namespaces;
+  return unknownNamespace(BoxFilter(request), snapshot);
+}
+
+TEST(BoxFilter, NamesTheNamespaceThatNoBoxHas) {
+  Snapshot snapshot = smallSnapshot();
+  EXPECT_EQ(unknownAmong({}, snapshot), "");
+  EXPECT_EQ(unknownAmong({"robot", "rack"}, snapshot), "");
+  EXPECT_EQ(
+      unknownAmong({"rack", "robt"}, snapshot),
+      "No box has the namespace 'robt': there are 'rack', 'robot'. Correct it, unless none is "
+      "meant to be there now.");
+  EXPECT_NE(unknownAmong({""}, snapshot), "");
+  snapshot.names.insert(snapshot.names.begin(), BoxName{"/a", "", 1, ""});
+  EXPECT_EQ(unknownAmong({""}, snapshot), "");
+  EXPECT_EQ(unknownAmong({"rac"}, smallSnapshot()).find("No box has the namespace 'rac':"), 0U);
+}
+
+TEST(BoxFilter, ListsAFewOfManyNamespaces) {
+  Snapshot snapshot;
+  EXPECT_EQ(unknownAmong({"rack"}, snapshot),
+            "No box has the namespace 'rack': there are no boxes.");
+  for (int i = 10; i < 35; ++i) {
+    snapshot.names.push_back({"/a", std::to_string(i), 1, ""});
+  }
+  const std::string sentence = unknownAmong({"rack"}, snapshot);
+  EXPECT_NE(sentence.find("there are '10', '11'"), std::string::npos) << sentence;
+  EXPECT_NE(sentence.find("'19' and 15 more."), std::string::npos) << sentence;
 }
 
 TEST(CastRay, SeveralBoxesOfOneNameAreIgnoredTogether) {
