@@ -69,6 +69,9 @@ std::string print(const XmlRpcValue& value) {
     case XmlRpcValue::TypeBoolean:
       out << (static_cast<bool>(value) ? "true" : "false");
       break;
+    case XmlRpcValue::TypeDouble:  // 2.0 must not look like the integer
+      out << "the double " << static_cast<const double&>(value);
+      break;
     default:
       value.write(out);
   }

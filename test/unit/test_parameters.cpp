@@ -111,7 +111,7 @@ TEST(Parameters, RefusalsNameTheParameterItsValueAndWhatIsAllowed) {
       {"transform_timeout", XmlRpcValue(std::nan("")), "/node/transform_timeout", "nan", "0 to 60"},
       {"build_ahead", XmlRpcValue(std::numeric_limits<double>::infinity()), "/node/build_ahead",
        "inf", "0 to 3600 [s]"},
-      {"service_threads", XmlRpcValue(2.0), "/node/service_threads", "2",
+      {"service_threads", XmlRpcValue(2.0), "/node/service_threads", "the double 2;",
        "an integer from 1 to 64"},
       {"service_threads", XmlRpcValue(0), "/node/service_threads", "0", "1 to 64"},
       {"service_threads", XmlRpcValue(true), "/node/service_threads", "true", "an integer"},
