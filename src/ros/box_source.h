@@ -55,7 +55,7 @@ struct BoxChange {
   /// Counts `boxes` bad ones.
   void reject(Rejection why, std::size_t boxes, const std::string& detail);
   /// The only door for boxes: checks one, halves its `size` (full sides [m]) and appends it, or
-  /// rejects it.
+  /// rejects it. A half is exact, but for sides below 2^-1021 m, where it is rounded to nearest.
   void add(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
            const Vector3& size);
 };

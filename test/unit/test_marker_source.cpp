@@ -304,6 +304,19 @@ TEST(MarkerSource, RejectsNegativeSizesOrientationsOffUnitLengthAndBadFrames) {
   }
 }
 
+TEST(MarkerSource, HalvesSidesExactlyDownToWhereDoublesEnd) {
+  Marker marker = cube();
+  marker.scale.x = 3 * std::numeric_limits<double>::min();
+  marker.scale.y = 2 * std::numeric_limits<double>::denorm_min();
+  marker.scale.z = std::numeric_limits<double>::denorm_min();
+  const DecodedMessage message = decode(marker);
+  ASSERT_EQ(message.changes.at(0).boxes.size(), 1U);
+  const Vector3 half = message.changes[0].boxes[0].box.half_extents;
+  EXPECT_EQ(2 * half.x(), marker.scale.x);
+  EXPECT_EQ(2 * half.y(), marker.scale.y);
+  EXPECT_EQ(half.z(), 0.0) << "there is no half of the smallest double";
+}
+
 TEST(MarkerSource, RefusesMessagesWithTooManyBoxes) {
   EXPECT_EQ(decode(arrayOf({cube(), cubeList()}), 4).changes.size(), 2U);
   const DecodedMessage message = decode(arrayOf({cube(), cubeList()}), 3);
