@@ -142,6 +142,19 @@ std::size_t BoxStore::expire(const ros::Time& now) {
   return expired;
 }
 
+void BoxStore::startClock(const ros::Time& now) {
+  next_expiry_ = startedAt(now, next_expiry_);
+  for (Topic& topic : topics_) {
+    for (auto& items : topic.items) {
+      for (auto& entry : items.second) {
+        Item& item = entry.second;
+        item.latest_expiry = startedAt(now, item.latest_expiry);
+        item.placed_expiry = startedAt(now, item.placed_expiry);
+      }
+    }
+  }
+}
+
 const Item* BoxStore::find(const Word& word) const {
   const Items& all = topics_.at(word.topic).items;
   const auto items = all.find(word.change.ns);

@@ -18,6 +18,11 @@ namespace box_query {
 /// No end of life.
 constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
+/// The end of a life that began at time 0, if it begins at `now` instead. [ns]
+inline std::int64_t startedAt(const ros::Time& now, std::int64_t expiry) {
+  return expiry == kForever ? kForever : expiry + static_cast<std::int64_t>(now.toNSec());
+}
+
 /// One kSet change that the store has been told of, and that is still to be placed.
 struct Word {
   std::size_t topic = 0;
@@ -75,6 +80,9 @@ class BoxStore {
 
   /// Forgets what has ended by `now`. @return the number of boxes that were placed or waiting.
   std::size_t expire(const ros::Time& now);
+
+  /// Lifetimes that began at time 0 begin at `now`.
+  void startClock(const ros::Time& now);
 
   const Items& items(std::size_t topic) const { return topics_.at(topic).items; }
   std::size_t waiting(std::size_t topic) const { return topics_.at(topic).waiting; }

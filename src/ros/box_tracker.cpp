@@ -217,11 +217,29 @@ void BoxTracker::restart() {
   waiting_.clear();
   locked_.clear();
   newest_stamp_ = ros::Time();
+  unstamped_ = false;
+  ++changes_;
+}
+
+void BoxTracker::startClock(const ros::Time& now) {
+  for (Topic& topic : topics_) {
+    if (topic.state.heard) {
+      topic.state.last_message = now;
+    }
+  }
+  store_.startClock(now);
+  waiting_.startClock(now);
+  if (unstamped_) {
+    unstamped_ = false;
+    noteStamp(ros::Time(), now);
+  }
   ++changes_;
 }
 
 void BoxTracker::noteStamp(const ros::Time& stamp, const ros::Time& now) {
-  newest_stamp_ = std::max(newest_stamp_, stamp.isZero() ? now : stamp);
+  const ros::Time& time = stamp.isZero() ? now : stamp;
+  unstamped_ = unstamped_ || time.isZero();
+  newest_stamp_ = std::max(newest_stamp_, time);
 }
 
 const std::optional<FramePose>& BoxTracker::pose(const WaitingList::Place& place) {

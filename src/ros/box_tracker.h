@@ -50,6 +50,9 @@ class BoxTracker {
   void followLockedFrames();
   /// Forgets all boxes, and that topics were heard.
   void restart();
+  /// The ROS clock has started, at `now`: what came before, at time 0, counts as received now.
+  /// Whether a topic's or the clock's first message comes first is chance.
+  void startClock(const ros::Time& now);
 
   Draft draft();
 
@@ -89,6 +92,7 @@ class BoxTracker {
   std::set<std::string> used_frames_;                       ///< of them, those in the draft
   std::size_t drafted_boxes_ = 0;                           ///< in the last draft
   ros::Time newest_stamp_;
+  bool unstamped_ = false;  ///< something without a stamp came before the clock started
   std::uint64_t changes_ = 0;
   std::uint64_t moves_ = 0;  ///< of locked frames
   MonitorStatistics counts_;

@@ -87,6 +87,15 @@ void WaitingList::clear() {
   boxes_ = 0;
 }
 
+void WaitingList::startClock(const ros::Time& now) {
+  for (auto& [place, words] : words_) {
+    for (Waiting& waiting : words) {
+      waiting.word.received = now;
+      waiting.word.expiry = startedAt(now, waiting.word.expiry);
+    }
+  }
+}
+
 const WaitingList::Place* WaitingList::firstPlace(
     std::size_t topic, const std::function<bool(const Word&)>& wanted) const {
   for (const auto& [place, words] : words_) {

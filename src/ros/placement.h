@@ -64,6 +64,8 @@ class WaitingList {
   /// Drops the words that nobody wants any more.
   void purge(const std::function<bool(const Word&)>& wanted);
   void clear();
+  /// Words that were received at time 0 count as received at `now`.
+  void startClock(const ros::Time& now);
 
   /// The first place that a word of that topic waits for, or null.
   const Place* firstPlace(std::size_t topic, const std::function<bool(const Word&)>& wanted) const;

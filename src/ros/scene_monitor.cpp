@@ -212,6 +212,9 @@ void SceneMonitor::Impl::noticeTime() {
     transforms.clear();
     tracker.restart();
   }
+  if (now.isZero() && !time.isZero()) {
+    tracker.startClock(time);
+  }
   now = time;
 }
 

@@ -24,7 +24,7 @@ class SceneMonitorClock : public testing::Test {
   Talker<rosgraph_msgs::Clock> clock_{"/clock"};
 };
 
-// The first test, since a clock cannot be unset again.
+// The first tests, since a clock cannot be unset again.
 TEST_F(SceneMonitorClock, IsIncompleteBeforeItHasStarted) {
   ASSERT_TRUE(ros::Time::now().isZero());
   SceneMonitor monitor(ros::NodeHandle(), listenTo({"no_clock"}));
@@ -35,8 +35,40 @@ TEST_F(SceneMonitorClock, IsIncompleteBeforeItHasStarted) {
   EXPECT_EQ(completenessOf(monitor).reason,
             "The ROS clock has not started: publish /clock, or unset /use_sim_time.");
   EXPECT_FALSE(completenessOf(monitor).complete);
-  setTime(1.0);
+  EXPECT_EQ(monitor.currentScene()->age(ros::Time::now()), std::numeric_limits<double>::infinity());
+}
+
+// What is latched comes once: before the first message of /clock or after it, as it happens. This
+// test starts the clock.
+TEST_F(SceneMonitorClock, TakesWhatCameBeforeItHasStartedAsReceivedThen) {
+  ASSERT_TRUE(ros::Time::now().isZero());
+  Parameters parameters = listenTo({"before_clock"});
+  parameters.box_topics[0].timeout = 2.0;
+  SceneMonitor monitor(ros::NodeHandle(), parameters);
+  ArrayTalker talker("before_clock");
+  Talker<tf2_msgs::TFMessage> tf("/tf_static");
+  ASSERT_TRUE(talker.isHeard() && tf.isHeard());
+  Marker mortal = cube("map", 1, 1.0);
+  mortal.lifetime = ros::Duration(1.5);
+  Marker waiting = cube("late", 2, 2.0);
+  waiting.lifetime = ros::Duration(1.5);
+  talker.say(array({mortal, waiting}));
+  ASSERT_TRUE(hasBoxes(monitor, 1));
+  setTime(50.0);
+  EXPECT_EQ(monitor.currentScene()->age(ros::Time::now()), 0.0);
+  tf.say(transform("map", "late", ros::Time(), 1.0));
+  ASSERT_TRUE(hasBoxes(monitor, 2));
   EXPECT_TRUE(completenessOf(monitor).complete) << completenessOf(monitor).reason;
+  setTime(51.0);
+  EXPECT_EQ(monitor.currentScene()->age(ros::Time::now()), 1.0);
+  EXPECT_EQ(monitor.currentScene()->scene.size(), 2U);
+  setTime(51.5);
+  EXPECT_EQ(monitor.currentScene()->scene.size(), 0U);
+  setTime(52.5);
+  EXPECT_EQ(completenessOf(monitor).reason.find(
+                "Topic /before_clock is stale: its last message came 2.5 s"),
+            0U)
+      << completenessOf(monitor).reason;
 }
 
 TEST_F(SceneMonitorClock, EndsLifetimesAndTimeoutsToTheNanosecond) {

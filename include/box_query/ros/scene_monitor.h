@@ -52,7 +52,7 @@ struct Completeness {
 struct Snapshot {
   std::uint64_t id = 0;  ///< counts up from 1; 0 is never a snapshot
   /// Newest stamp among the messages of its boxes and deletions (a zero stamp counts as its time of
-  /// receipt).
+  /// receipt; what comes before a simulated clock has started is received when it starts).
   ros::Time stamp;
   std::string frame;               ///< fixed frame
   Scene scene;                     ///< box i of the scene ...
