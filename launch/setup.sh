@@ -6,7 +6,7 @@
 #     packages of their own. A configuration without tests gets them when they are wanted, and keeps what is built.
 # Both return 1 after a sentence on stderr that says what to do.
 
-bq_source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+bq_source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 # Somebody's own python3 before the system's has no ROS.
 export PATH=/usr/bin:$PATH
 
