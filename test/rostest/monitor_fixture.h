@@ -7,7 +7,9 @@
 #include <box_query/ros/scene_monitor.h>
 
 #include <chrono>
+#include <cmath>
 #include <functional>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -113,5 +115,54 @@ inline bool hasBoxes(SceneMonitor& monitor, std::size_t boxes) {
 inline const OrientedBox& boxOf(const Snapshot& snapshot, std::size_t index) {
   return std::get<OrientedBox>(snapshot.scene.boxes().at(index));
 }
+
+/// "id:x" of every box, in order.
+inline std::string contents(const Snapshot& snapshot) {
+  std::string text;
+  for (std::size_t i = 0; i < snapshot.names.size(); ++i) {
+    text += std::to_string(snapshot.names[i].id) + ":" +
+            std::to_string(std::lround(boxOf(snapshot, i).center.x())) + " ";
+  }
+  return text;
+}
+
+/// A monitor of one topic that has the name of the test, and what publishes there.
+class MonitorOfOneTopic : public testing::Test {
+ protected:
+  MonitorOfOneTopic()
+      : topic_(std::string("/") + testing::UnitTest::GetInstance()->current_test_info()->name()),
+        parameters_(listenTo({topic_})) {}
+
+  /// With parameters_ as they are.
+  void listen() { monitor_ = std::make_unique<SceneMonitor>(ros::NodeHandle(), parameters_); }
+  /// The same, with a publisher that is heard.
+  void start() {
+    listen();
+    talker_ = std::make_unique<ArrayTalker>(topic_);
+    ASSERT_TRUE(talker_->isHeard());
+  }
+
+  void say(const std::vector<visualization_msgs::Marker>& markers) { talker_->say(array(markers)); }
+
+  bool holds(const std::string& expected) {
+    return eventually([&] { return contents(*monitor_->currentScene()) == expected; });
+  }
+  bool becomes(bool complete) {
+    return eventually([&] { return completenessOf(*monitor_).complete == complete; });
+  }
+  /// Checks that the scene is incomplete for a reason with these words.
+  void expectReason(const std::vector<std::string>& words) {
+    const Completeness known = completenessOf(*monitor_);
+    EXPECT_FALSE(known.complete);
+    for (const std::string& word : words) {
+      EXPECT_NE(known.reason.find(word), std::string::npos) << word << " in " << known.reason;
+    }
+  }
+
+  const std::string topic_;
+  Parameters parameters_;
+  std::unique_ptr<SceneMonitor> monitor_;
+  std::unique_ptr<ArrayTalker> talker_;
+};
 
 }  // namespace box_query

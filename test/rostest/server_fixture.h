@@ -69,10 +69,16 @@ inline GetSceneResponse scene(std::uint64_t id = 0) {
   return call<GetScene>("get_scene", request);
 }
 
+template <class Request>
+Request requestIn(const std::string& frame) {
+  Request request;
+  request.header.frame_id = frame;
+  return request;
+}
+
 inline CastRayRequest ray(const std::string& frame, const geometry_msgs::Point& origin,
                           const geometry_msgs::Vector3& direction) {
-  CastRayRequest request;
-  request.header.frame_id = frame;
+  auto request = requestIn<CastRayRequest>(frame);
   request.origin = origin;
   request.direction = direction;
   return request;

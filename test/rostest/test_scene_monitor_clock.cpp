@@ -10,7 +10,7 @@ namespace {
 
 using visualization_msgs::Marker;
 
-class SceneMonitorClock : public testing::Test {
+class SceneMonitorClock : public MonitorOfOneTopic {
  protected:
   /// Sets the ROS time of this process, monitor included.
   void setTime(double seconds) {
@@ -27,120 +27,107 @@ class SceneMonitorClock : public testing::Test {
 // The first tests, since a clock cannot be unset again.
 TEST_F(SceneMonitorClock, IsIncompleteBeforeItHasStarted) {
   ASSERT_TRUE(ros::Time::now().isZero());
-  SceneMonitor monitor(ros::NodeHandle(), listenTo({"no_clock"}));
-  ArrayTalker talker("no_clock");
-  ASSERT_TRUE(talker.isHeard());
-  talker.say(array({cube("map", 1, 1.0)}));
-  ASSERT_TRUE(hasBoxes(monitor, 1));
-  EXPECT_EQ(completenessOf(monitor).reason,
+  start();
+  say({cube("map", 1, 1.0)});
+  ASSERT_TRUE(hasBoxes(*monitor_, 1));
+  EXPECT_EQ(completenessOf(*monitor_).reason,
             "The ROS clock has not started: publish /clock, or unset /use_sim_time.");
-  EXPECT_FALSE(completenessOf(monitor).complete);
-  EXPECT_EQ(monitor.currentScene()->age(ros::Time::now()), std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(completenessOf(*monitor_).complete);
+  EXPECT_EQ(monitor_->currentScene()->age(ros::Time::now()),
+            std::numeric_limits<double>::infinity());
 }
 
 // What is latched comes once: before the first message of /clock or after it, as it happens. This
 // test starts the clock.
 TEST_F(SceneMonitorClock, TakesWhatCameBeforeItHasStartedAsReceivedThen) {
   ASSERT_TRUE(ros::Time::now().isZero());
-  Parameters parameters = listenTo({"before_clock"});
-  parameters.box_topics[0].timeout = 2.0;
-  SceneMonitor monitor(ros::NodeHandle(), parameters);
-  ArrayTalker talker("before_clock");
+  parameters_.box_topics[0].timeout = 2.0;
+  start();
   Talker<tf2_msgs::TFMessage> tf("/tf_static");
-  ASSERT_TRUE(talker.isHeard() && tf.isHeard());
+  ASSERT_TRUE(tf.isHeard());
   Marker mortal = cube("map", 1, 1.0);
   mortal.lifetime = ros::Duration(1.5);
   Marker waiting = cube("late", 2, 2.0);
   waiting.lifetime = ros::Duration(1.5);
-  talker.say(array({mortal, waiting}));
-  ASSERT_TRUE(hasBoxes(monitor, 1));
+  say({mortal, waiting});
+  ASSERT_TRUE(hasBoxes(*monitor_, 1));
   setTime(50.0);
-  EXPECT_EQ(monitor.currentScene()->age(ros::Time::now()), 0.0);
+  EXPECT_EQ(monitor_->currentScene()->age(ros::Time::now()), 0.0);
   tf.say(transform("map", "late", ros::Time(), 1.0));
-  ASSERT_TRUE(hasBoxes(monitor, 2));
-  EXPECT_TRUE(completenessOf(monitor).complete) << completenessOf(monitor).reason;
+  ASSERT_TRUE(hasBoxes(*monitor_, 2));
+  EXPECT_TRUE(completenessOf(*monitor_).complete) << completenessOf(*monitor_).reason;
   setTime(51.0);
-  EXPECT_EQ(monitor.currentScene()->age(ros::Time::now()), 1.0);
-  EXPECT_EQ(monitor.currentScene()->scene.size(), 2U);
+  EXPECT_EQ(monitor_->currentScene()->age(ros::Time::now()), 1.0);
+  EXPECT_EQ(monitor_->currentScene()->scene.size(), 2U);
   setTime(51.5);
-  EXPECT_EQ(monitor.currentScene()->scene.size(), 0U);
+  EXPECT_EQ(monitor_->currentScene()->scene.size(), 0U);
   setTime(52.5);
-  EXPECT_EQ(completenessOf(monitor).reason.find(
-                "Topic /before_clock is stale: its last message came 2.5 s"),
-            0U)
-      << completenessOf(monitor).reason;
+  expectReason({"Topic " + topic_ + " is stale: its last message came 2.5 s ago"});
 }
 
 TEST_F(SceneMonitorClock, EndsLifetimesAndTimeoutsToTheNanosecond) {
   setTime(100.0);
-  Parameters parameters = listenTo({"clock_life"});
-  parameters.box_topics[0].timeout = 2.0;
-  SceneMonitor monitor(ros::NodeHandle(), parameters);
-  ArrayTalker talker("clock_life");
-  ASSERT_TRUE(talker.isHeard());
+  parameters_.box_topics[0].timeout = 2.0;
+  start();
   Marker mortal = cube("map", 1, 1.0);
   mortal.lifetime = ros::Duration(1.5);
-  talker.say(array({mortal, cube("map", 2, 2.0)}));
-  ASSERT_TRUE(hasBoxes(monitor, 2));
+  say({mortal, cube("map", 2, 2.0)});
+  ASSERT_TRUE(hasBoxes(*monitor_, 2));
   setTime(101.499999999);
-  EXPECT_EQ(monitor.currentScene()->scene.size(), 2U);
+  EXPECT_EQ(monitor_->currentScene()->scene.size(), 2U);
   setTime(101.5);
-  EXPECT_EQ(monitor.currentScene()->scene.size(), 1U)
+  EXPECT_EQ(monitor_->currentScene()->scene.size(), 1U)
       << "at the query, not at the worker's leisure";
   setTime(102.0);
-  EXPECT_TRUE(completenessOf(monitor).complete);
-  EXPECT_EQ(monitor.currentScene()->age(ros::Time::now()), 2.0) << "no stamp: that of receipt";
+  EXPECT_TRUE(completenessOf(*monitor_).complete);
+  EXPECT_EQ(monitor_->currentScene()->age(ros::Time::now()), 2.0) << "no stamp: that of receipt";
   setTime(102.000000001);
-  EXPECT_FALSE(completenessOf(monitor).complete);
+  EXPECT_FALSE(completenessOf(*monitor_).complete);
 }
 
 TEST_F(SceneMonitorClock, LooksUpTransformsWhileTheClockStands) {
   setTime(200.0);
-  SceneMonitor monitor(ros::NodeHandle(), listenTo({"clock_stands"}));
+  listen();
   geometry_msgs::TransformStamped found;
   const auto start = std::chrono::steady_clock::now();
-  EXPECT_NE(monitor.lookUpTransform("map", "absent", ros::Time(), 0.1, found), "");
+  EXPECT_NE(monitor_->lookUpTransform("map", "absent", ros::Time(), 0.1, found), "");
   const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - start;
   EXPECT_LT(waited.count(), 5.0);
 }
 
 TEST_F(SceneMonitorClock, GivesUpWaitingBoxesWhileTheClockStands) {
   setTime(300.0);
-  Parameters parameters = listenTo({"clock_gives_up"});
-  parameters.waiting_timeout = 0.1;
-  SceneMonitor monitor(ros::NodeHandle(), parameters);
-  ArrayTalker talker("clock_gives_up");
-  ASSERT_TRUE(talker.isHeard());
-  talker.say(array({cube("absent", 1, 1.0)}));
-  EXPECT_TRUE(eventually([&] { return monitor.statistics().given_up_boxes == 1; }));
+  parameters_.waiting_timeout = 0.1;
+  start();
+  say({cube("absent", 1, 1.0)});
+  EXPECT_TRUE(eventually([&] { return monitor_->statistics().given_up_boxes == 1; }));
 }
 
 TEST_F(SceneMonitorClock, ForgetsWhatItKnewWhenTimeGoesBack) {
   setTime(500.0);
-  SceneMonitor monitor(ros::NodeHandle(), listenTo({"clock_back"}));
-  ArrayTalker talker("clock_back");
+  start();
   Talker<tf2_msgs::TFMessage> tf("/tf");
-  ASSERT_TRUE(talker.isHeard() && tf.isHeard());
+  ASSERT_TRUE(tf.isHeard());
   tf.say(transform("map", "back", ros::Time(499), 1.0));
   geometry_msgs::TransformStamped found;
-  ASSERT_EQ(monitor.lookUpTransform("map", "back", ros::Time(), 10.0, found), "");
-  talker.say(array({cube("map", 1, 1.0), cube("back", 2, 2.0)}));
-  ASSERT_TRUE(hasBoxes(monitor, 2));
-  const std::uint64_t id = monitor.currentScene()->id;
+  ASSERT_EQ(monitor_->lookUpTransform("map", "back", ros::Time(), 10.0, found), "");
+  say({cube("map", 1, 1.0), cube("back", 2, 2.0)});
+  ASSERT_TRUE(hasBoxes(*monitor_, 2));
+  const std::uint64_t id = monitor_->currentScene()->id;
 
   setTime(50.0);
-  const SnapshotPtr after = monitor.currentScene();
+  const SnapshotPtr after = monitor_->currentScene();
   EXPECT_EQ(after->scene.size(), 0U);
   EXPECT_GT(after->id, id);
   EXPECT_FALSE(after->completeness(ros::Time::now()).complete);
-  EXPECT_NE(monitor.lookUpTransform("map", "back", ros::Time(), 0.0, found), "")
+  EXPECT_NE(monitor_->lookUpTransform("map", "back", ros::Time(), 0.0, found), "")
       << "a transform of the future";
 
   tf.say(transform("map", "back", ros::Time(50), 7.0));
-  talker.say(array({cube("back", 2, 2.0)}));
-  ASSERT_TRUE(hasBoxes(monitor, 1));
-  EXPECT_EQ(boxOf(*monitor.currentScene(), 0).center, Vector3(9.0, 0.0, 0.0));
-  EXPECT_TRUE(completenessOf(monitor).complete);
+  say({cube("back", 2, 2.0)});
+  ASSERT_TRUE(hasBoxes(*monitor_, 1));
+  EXPECT_EQ(boxOf(*monitor_->currentScene(), 0).center, Vector3(9.0, 0.0, 0.0));
+  EXPECT_TRUE(completenessOf(*monitor_).complete);
 }
 
 }  // namespace

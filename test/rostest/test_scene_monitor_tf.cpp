@@ -14,16 +14,13 @@ using visualization_msgs::Marker;
 constexpr double kQuarterTurn = 1.5707963267948966;
 
 /// A monitor with one topic, its publisher and tf, all connected.
-class SceneMonitorTf : public testing::Test {
+class SceneMonitorTf : public MonitorOfOneTopic {
  protected:
-  void start(Parameters parameters) {
-    monitor_ = std::make_unique<SceneMonitor>(ros::NodeHandle(), parameters);
-    talker_ = std::make_unique<ArrayTalker>(parameters.box_topics[0].topic);
+  void start() {
+    MonitorOfOneTopic::start();
     tf_ = std::make_unique<Talker<tf2_msgs::TFMessage>>("/tf");
-    ASSERT_TRUE(talker_->isHeard() && tf_->isHeard());
+    ASSERT_TRUE(tf_->isHeard());
   }
-
-  void say(const Marker& marker) { talker_->say(array({marker})); }
 
   /// Says it at that time, and waits until the monitor knows it.
   void move(const std::string& child, const ros::Time& stamp, double x, double yaw = 0.0) {
@@ -40,12 +37,6 @@ class SceneMonitorTf : public testing::Test {
     });
   }
 
-  bool becomes(bool complete) {
-    return eventually([&] { return completenessOf(*monitor_).complete == complete; });
-  }
-
-  std::unique_ptr<SceneMonitor> monitor_;
-  std::unique_ptr<ArrayTalker> talker_;
   std::unique_ptr<Talker<tf2_msgs::TFMessage>> tf_;
 };
 
@@ -55,11 +46,11 @@ Marker at(Marker marker, const ros::Time& stamp) {
 }
 
 TEST_F(SceneMonitorTf, PlacesBoxesOfOtherFrames) {
-  start(listenTo({"tf_other"}));
+  start();
   move("turned", ros::Time(10), 5.0, kQuarterTurn);
   Marker box = at(cube("/turned", 1, 1.0, 0.0, 2.0), ros::Time(10));
   box.scale.x = 4.0;
-  say(box);
+  say({box});
   ASSERT_TRUE(isAt(0, Vector3(5.0, 1.0, 2.0)));
   const SnapshotPtr snapshot = monitor_->scene();
   EXPECT_TRUE(snapshot->completeness(ros::Time::now()).complete);
@@ -70,18 +61,14 @@ TEST_F(SceneMonitorTf, PlacesBoxesOfOtherFrames) {
 }
 
 TEST_F(SceneMonitorTf, WaitsForALateTransformAndSaysSo) {
-  start(listenTo({"tf_late"}));
-  say(at(cube("late", 1, 1.0), ros::Time(10)));
-  talker_->say(array({at(cube("late", 2, 2.0), ros::Time(10)), cube("map", 3, 3.0)}));
+  start();
+  say({at(cube("late", 1, 1.0), ros::Time(10))});
+  say({at(cube("late", 2, 2.0), ros::Time(10)), cube("map", 3, 3.0)});
   ASSERT_TRUE(hasBoxes(*monitor_, 1));
   const SnapshotPtr before = monitor_->currentScene();
   EXPECT_EQ(before->names[0].id, 3) << "boxes that can be placed are";
   EXPECT_EQ(before->topics[0].waiting, 2U);
-  const Completeness known = before->completeness(ros::Time::now());
-  EXPECT_FALSE(known.complete);
-  for (const char* word : {"2 boxes", "/tf_late", "'late'", "'map'", "10.000", "publish it"}) {
-    EXPECT_NE(known.reason.find(word), std::string::npos) << word << " in " << known.reason;
-  }
+  expectReason({"2 boxes", topic_, "'late'", "'map'", "10.000", "publish it"});
   move("late", ros::Time(9), 100.0);
   EXPECT_FALSE(completenessOf(*monitor_).complete) << "tf knows the frame, but not that time";
   move("late", ros::Time(11), 100.0);
@@ -92,32 +79,29 @@ TEST_F(SceneMonitorTf, WaitsForALateTransformAndSaysSo) {
 }
 
 TEST_F(SceneMonitorTf, GivesUpWhatNeverComesAndNamesIt) {
-  Parameters parameters = listenTo({"tf_missing"});
-  parameters.waiting_timeout = 0.2;
-  start(parameters);
-  say(cube("never", 1, 1.0));
+  parameters_.waiting_timeout = 0.2;
+  start();
+  say({cube("never", 1, 1.0)});
   ASSERT_TRUE(eventually([&] { return monitor_->statistics().given_up_boxes == 1; }));
   const SnapshotPtr snapshot = monitor_->currentScene();
   EXPECT_EQ(snapshot->topics[0].waiting, 0U);
   EXPECT_EQ(snapshot->topics[0].rejected, 1U);
-  const Completeness known = snapshot->completeness(ros::Time::now());
-  EXPECT_FALSE(known.complete);
-  EXPECT_EQ(
-      known.reason,
-      "1 box of topic /tf_missing cannot be used: box 1 of namespace 'test' was given up: the "
-      "transform from frame 'never' to 'map' has not come in time; publish that first. "
-      "Publish the box again, correctly, or delete it.");
-  say(withAction(cube("never", 1, 1.0), Marker::DELETE));
+  EXPECT_EQ(completenessOf(*monitor_).reason,
+            "1 box of topic " + topic_ +
+                " cannot be used: box 1 of namespace 'test' was given up: the "
+                "transform from frame 'never' to 'map' has not come in time; publish that first. "
+                "Publish the box again, correctly, or delete it.");
+  say({withAction(cube("never", 1, 1.0), Marker::DELETE)});
   EXPECT_TRUE(becomes(true));
 }
 
 TEST_F(SceneMonitorTf, PlacesAtTheStampOfTheMessage) {
-  start(listenTo({"tf_moving"}));
+  start();
   for (int second = 10; second <= 14; ++second) {
     move("cart", ros::Time(second), second);
   }
-  talker_->say(array({at(cube("cart", 1, 0.0), ros::Time(12)),
-                      at(cube("cart", 2, 0.0), ros::Time(10, 500000000)), cube("cart", 3, 0.0)}));
+  say({at(cube("cart", 1, 0.0), ros::Time(12)), at(cube("cart", 2, 0.0), ros::Time(10, 500000000)),
+       cube("cart", 3, 0.0)});
   ASSERT_TRUE(hasBoxes(*monitor_, 3));
   EXPECT_TRUE(isAt(0, Vector3(12.0, 0.0, 0.0)));
   EXPECT_TRUE(isAt(1, Vector3(10.5, 0.0, 0.0)));
@@ -127,10 +111,10 @@ TEST_F(SceneMonitorTf, PlacesAtTheStampOfTheMessage) {
 }
 
 TEST_F(SceneMonitorTf, FollowsFramesThatBoxesAreLockedTo) {
-  start(listenTo({"tf_locked"}));
+  start();
   Marker locked = at(cube("lift", 1, 1.0), ros::Time(5));
   locked.frame_locked = true;
-  say(locked);
+  say({locked});
   ASSERT_TRUE(becomes(false));
   ASSERT_TRUE(eventually([&] { return monitor_->currentScene()->topics[0].waiting == 1; }));
   for (int second = 10; second < 15; ++second) {
@@ -140,14 +124,14 @@ TEST_F(SceneMonitorTf, FollowsFramesThatBoxesAreLockedTo) {
   EXPECT_TRUE(completenessOf(*monitor_).complete);
   const SnapshotPtr before = monitor_->currentScene();
   EXPECT_EQ(monitor_->currentScene(), before) << "nothing has moved";
-  say(withAction(locked, Marker::DELETE));
+  say({withAction(locked, Marker::DELETE)});
   EXPECT_TRUE(hasBoxes(*monitor_, 0));
 }
 
 TEST_F(SceneMonitorTf, ShowsAnEarlierWordWhileEveryTransformIsLate) {
-  start(listenTo({"tf_behind"}));
+  start();
   for (int second = 10; second < 20; ++second) {
-    say(at(cube("behind", 1, 0.0), ros::Time(second)));
+    say({at(cube("behind", 1, 0.0), ros::Time(second))});
     ASSERT_TRUE(eventually(
         [&] { return monitor_->statistics().messages == static_cast<std::uint64_t>(second - 9); }));
     move("behind", ros::Time(second - 1), second - 1.0);  // one message late
@@ -162,37 +146,36 @@ TEST_F(SceneMonitorTf, ShowsAnEarlierWordWhileEveryTransformIsLate) {
 }
 
 TEST_F(SceneMonitorTf, DropsWaitingBoxesThatAreDeleted) {
-  start(listenTo({"tf_deleted"}));
-  say(at(cube("slow", 1, 1.0), ros::Time(10)));
+  start();
+  say({at(cube("slow", 1, 1.0), ros::Time(10))});
   ASSERT_TRUE(eventually([&] { return monitor_->currentScene()->topics[0].waiting == 1; }));
-  say(withAction(cube("", 1, 0.0), Marker::DELETE));
+  say({withAction(cube("", 1, 0.0), Marker::DELETE)});
   ASSERT_TRUE(becomes(true));
   move("slow", ros::Time(10), 1.0);
-  say(at(cube("slow", 2, 2.0), ros::Time(10)));
+  say({at(cube("slow", 2, 2.0), ros::Time(10))});
   ASSERT_TRUE(isAt(0, Vector3(3.0, 0.0, 0.0)));
   EXPECT_EQ(monitor_->currentScene()->scene.size(), 1U);
 }
 
 TEST_F(SceneMonitorTf, LetsOnlySoManyWait) {
-  Parameters parameters = listenTo({"tf_many"});
-  parameters.max_waiting_boxes = 3;
-  start(parameters);
-  talker_->say(array({cube("far", 1, 0.0), cube("far", 2, 0.0), cube("far", 3, 0.0),
-                      cube("far", 4, 0.0), cube("map", 5, 0.0)}));
+  parameters_.max_waiting_boxes = 3;
+  start();
+  say({cube("far", 1, 0.0), cube("far", 2, 0.0), cube("far", 3, 0.0), cube("far", 4, 0.0),
+       cube("map", 5, 0.0)});
   ASSERT_TRUE(hasBoxes(*monitor_, 1));
   const TopicState state = monitor_->currentScene()->topics[0];
   EXPECT_EQ(state.waiting, 3U);
   EXPECT_EQ(state.rejected, 1U);
   EXPECT_NE(state.problem.find("max_waiting_boxes"), std::string::npos) << state.problem;
   EXPECT_EQ(monitor_->statistics().overflowed_boxes, 1U);
-  talker_->say(array({withAction(cube("", 0, 0.0), Marker::DELETEALL), cube("far", 6, 0.0)}));
+  say({withAction(cube("", 0, 0.0), Marker::DELETEALL), cube("far", 6, 0.0)});
   ASSERT_TRUE(hasBoxes(*monitor_, 0));
   EXPECT_EQ(monitor_->currentScene()->topics[0].waiting, 1U) << "the deleted ones make room";
   EXPECT_EQ(monitor_->currentScene()->topics[0].rejected, 0U);
 }
 
 TEST_F(SceneMonitorTf, LooksUpTransformsThatComeInTime) {
-  start(listenTo({"tf_lookup"}));
+  start();
   geometry_msgs::TransformStamped found;
   EXPECT_EQ(monitor_->lookUpTransform("map", "/map", ros::Time(3), 0.0, found), "");
   EXPECT_EQ(found.transform.rotation.w, 1.0);

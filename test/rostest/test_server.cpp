@@ -38,8 +38,7 @@ ArrayTalker* Server::talker_ = nullptr;
 
 /// Runs first.
 TEST(ServerWithoutBoxes, AnswersButCannotCallAnythingClear) {
-  CheckSegmentRequest request;
-  request.header.frame_id = "map";
+  auto request = requestIn<CheckSegmentRequest>("map");
   request.end.x = 1;
   const CheckSegmentResponse unknown = checkSegment(request);
   EXPECT_TRUE(unknown.success) << unknown.message;
@@ -92,8 +91,7 @@ TEST_F(Server, CastsRaysAsTheLibraryDoesToTheLastBit) {
   const Snapshot snapshot = rebuilt(scene());
   std::mt19937 random(5);
   std::uniform_real_distribution<double> position(-12, 12);
-  CastRaysRequest request;
-  request.header.frame_id = "map";
+  auto request = requestIn<CastRaysRequest>("map");
   request.want_exits = request.want_points = request.want_normals = request.want_boxes = true;
   for (int i = 0; i < 400; ++i) {
     request.origins.push_back(point(position(random), position(random), position(random)));
@@ -129,8 +127,7 @@ TEST_F(Server, ChecksSegmentsAsTheLibraryDoesToTheLastBit) {
   const Snapshot snapshot = rebuilt(scene());
   std::mt19937 random(6);
   std::uniform_real_distribution<double> position(-14, 14);
-  CheckSegmentsRequest request;
-  request.header.frame_id = "map";
+  auto request = requestIn<CheckSegmentsRequest>("map");
   request.shape = CheckSegmentsRequest::PATH;
   request.want_clearances = request.want_points = true;
   request.want_blocked_at = request.want_boxes = true;
@@ -171,8 +168,7 @@ CastRayRequest rayThroughTwo(const GetSceneResponse& boxes) {
 TEST_F(Server, FindsEveryIntersection) {
   const Snapshot snapshot = rebuilt(scene());
   const CastRayRequest through = rayThroughTwo(scene());
-  FindIntersectionsRequest request;
-  request.header.frame_id = "map";
+  auto request = requestIn<FindIntersectionsRequest>("map");
   request.component = FindIntersectionsRequest::LINE;
   request.origin = through.origin;
   request.direction = through.direction;
@@ -206,8 +202,7 @@ TEST_F(Server, Filters) {
 }
 
 TEST_F(Server, WarnsOfANamespaceThatNoBoxHas) {
-  CheckSegmentRequest request;
-  request.header.frame_id = "map";
+  auto request = requestIn<CheckSegmentRequest>("map");
   request.namespaces = {"evn"};
   const CheckSegmentResponse response = call<CheckSegment>("check_segment", request);
   EXPECT_TRUE(response.success && response.clear) << "there may be no such box now";
@@ -266,19 +261,16 @@ TEST_F(Server, RefusesBadRequestsWithASentence) {
             "header.frame_id is empty: name the frame in which the geometry is given");
   EXPECT_EQ(cast(ray("map", point(0, 0, 0), vector(0, 0, 0))).message,
             "direction is zero: give a direction of any other length");
-  CheckSegmentRequest segment;
-  segment.header.frame_id = "map";
+  auto segment = requestIn<CheckSegmentRequest>("map");
   segment.radius = -1;
   EXPECT_EQ(checkSegment(segment).message, "radius is -1: give finite metres >= 0");
   EXPECT_TRUE(std::isnan(checkSegment(segment).clearance));
-  FindIntersectionsRequest find;
-  find.header.frame_id = "map";
+  auto find = requestIn<FindIntersectionsRequest>("map");
   find.component = 9;
   const auto found = call<FindIntersections>("find_intersections", find);
   EXPECT_FALSE(found.success);
   EXPECT_EQ(found.message, "component is 9: give LINE (0), RAY (1) or SEGMENT (2)");
-  CastRaysRequest rays;
-  rays.header.frame_id = "map";
+  auto rays = requestIn<CastRaysRequest>("map");
   rays.origins.resize(1);
   rays.directions.assign(3, vector(0, 1, 0));
   rays.directions[2].y = kNan;
@@ -294,8 +286,7 @@ TEST_F(Server, RefusesBadRequestsWithASentence) {
   EXPECT_EQ(call<CastRays>("cast_rays", rays).message,
             "too large a request: an array of 4001 elements, at most 4000 are taken; split it, or "
             "raise ~max_queries_per_call");
-  CheckSegmentsRequest segments;
-  segments.header.frame_id = "map";
+  auto segments = requestIn<CheckSegmentsRequest>("map");
   segments.points.resize(3);
   const auto odd = call<CheckSegments>("check_segments", segments);
   EXPECT_EQ(odd.message, "points has 3 elements: PAIRS needs a start and an end for every segment");
@@ -303,8 +294,7 @@ TEST_F(Server, RefusesBadRequestsWithASentence) {
 }
 
 TEST_F(Server, RefusesBytesThatAreNoRequestAtOnce) {
-  CastRaysRequest request;
-  request.header.frame_id = "map";
+  auto request = requestIn<CastRaysRequest>("map");
   const auto answered = [](std::vector<std::uint8_t> bytes) {
     RawRequest raw = {std::move(bytes)};
     CastRaysResponse response;
