@@ -178,6 +178,14 @@ class MarkerWriter {
   std::map<Key, std::string> shown_;  ///< with their frames, after the last message
 };
 
+/// The same for rviz, which puts a warning on a display of cubes with a text.
+visualization_msgs::MarkerArray withoutLabels(visualization_msgs::MarkerArray message) {
+  for (visualization_msgs::Marker& marker : message.markers) {
+    marker.text.clear();
+  }
+  return message;
+}
+
 /// The transform of ~tf_parent and ~tf_pose to the one frame of all boxes, if they ask for one.
 std::vector<geometry_msgs::TransformStamped> chooseTransform(const ros::NodeHandle& private_nh,
                                                              const std::vector<CsvScene>& frames) {
@@ -222,7 +230,7 @@ std::vector<geometry_msgs::TransformStamped> chooseTransform(const ros::NodeHand
 
 void publishBoxes() {
   ros::NodeHandle nh;
-  const ros::NodeHandle private_nh("~");
+  ros::NodeHandle private_nh("~");
   const std::vector<CsvScene> frames = chooseFrames(private_nh);
   const auto transforms = chooseTransform(private_nh, frames);
   const bool loop = parameter<bool>(private_nh, "loop", "true or false", false);
@@ -237,10 +245,14 @@ void publishBoxes() {
     broadcaster.sendTransform(transforms);
   }
   ros::Publisher publisher = nh.advertise<visualization_msgs::MarkerArray>("boxes", 10, true);
+  ros::Publisher unlabelled =
+      private_nh.advertise<visualization_msgs::MarkerArray>("markers", 10, true);
   MarkerWriter writer;
   ros::Rate rate(hertz);
   for (std::size_t i = 0; ros::ok() && i < frames.size();) {
-    publisher.publish(writer.next(frames[i], ros::Time::now()));
+    const visualization_msgs::MarkerArray message = writer.next(frames[i], ros::Time::now());
+    publisher.publish(message);
+    unlabelled.publish(withoutLabels(message));
     ++i;
     if (loop && frames.size() > 1) {
       i %= frames.size();

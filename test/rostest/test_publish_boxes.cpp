@@ -70,6 +70,17 @@ TEST(PublishBoxes, AStillSceneIsLatchedInFullDoubles) {
   EXPECT_GT(shelf.color.a, 0.0F);
 }
 
+TEST(PublishBoxes, ForRvizTheSameIsPublishedWithoutLabels) {
+  const auto labelled = receiveBoxes("still_boxes", 1);
+  const auto markers = receiveBoxes("still/markers", 1);
+  ASSERT_EQ(describe(markers[0]), (Lines{"rack/0 ", "rack/1 ", "pallet/0 "}));
+  for (std::size_t i = 0; i < 3; ++i) {
+    Marker marker = markers[0].markers[i];
+    marker.text = labelled[0].markers[i].text;
+    EXPECT_EQ(marker, labelled[0].markers[i]);
+  }
+}
+
 TEST(PublishBoxes, ATransformToTheFrameOfTheBoxesIsPublished) {
   const auto messages = receive<tf2_msgs::TFMessage>(
       "/tf_static", [](const std::vector<tf2_msgs::TFMessage>& m) { return !m.empty(); });
