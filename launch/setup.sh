@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # What the commands of this package share: find ROS, install what is missing, build. To be sourced by bash.
 #   bq_set_up [--yes] GROUP...    groups of packages: build, demo, viewer, test, benchmark, checks
-#   bq_build [--with-tests] BUILD_DIR TARGETS... [-- CMAKE_OPTION...]
-#     where nothing is configured, configures with these options; without --with-tests no test is, since the tests need
-#     packages of their own. A configuration without tests gets them when they are wanted, and keeps what is built.
-# Both return 1 after a sentence on stderr that says what to do.
+#   bq_configure [--with-tests] BUILD_DIR [CMAKE_OPTION...]
+#     where nothing is configured; without --with-tests no test is, since the tests need packages of their own. A
+#     configuration without tests gets them when they are wanted, and keeps what is built.
+#   bq_build [--with-tests] BUILD_DIR TARGETS...    configures if need be, and builds
+# All return 1 after a sentence on stderr that says what to do.
 
 bq_source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 # Somebody's own python3 before the system's has no ROS.
@@ -52,7 +53,15 @@ bq_missing_packages() {
 bq_install() {
   local yes=$1 command sudo='' answer package
   shift
-  [ "$(id -u)" = 0 ] || sudo='sudo '
+  if [ "$(id -u)" != 0 ]; then
+    if ! command -v sudo >/dev/null; then
+      echo "Packages are missing, and there is no sudo here to install them. Let root run" >&2
+      echo "  apt-get update && apt-get install -y --no-install-recommends $*" >&2
+      echo "and start this again." >&2
+      return 1
+    fi
+    sudo='sudo '
+  fi
   command="${sudo}apt-get install -y --no-install-recommends $*"
   echo "These packages are missing and will be installed:" >&2
   echo "  $command" >&2
@@ -81,7 +90,7 @@ bq_install() {
       return 1
     fi
   done
-  DEBIAN_FRONTEND=noninteractive $command
+  ${sudo}env DEBIAN_FRONTEND=noninteractive ${command#"$sudo"}  # sudo itself would drop the variable
 }
 
 bq_set_up() {
@@ -140,7 +149,7 @@ bq_has_tests() {
   [ -e "$1/tests.txt" ] && grep -qxF CATKIN_ENABLE_TESTING:BOOL=ON "$1/CMakeCache.txt"
 }
 
-bq_build() {
+bq_configure() {
   local build_dir tests=OFF cache
   if [ "$1" = --with-tests ]; then
     tests=ON
@@ -149,26 +158,33 @@ bq_build() {
   build_dir=$1
   cache=$build_dir/CMakeCache.txt
   shift
-  local -a targets=()
-  while [ $# -gt 0 ] && [ "$1" != -- ]; do
-    targets+=("$1")
-    shift
-  done
-  [ $# -eq 0 ] || shift
   # A checkout that was moved or copied is built anew.
   if [ -e "$cache" ] && ! grep -qxF "CMAKE_CACHEFILE_DIR:INTERNAL=$build_dir" "$cache"; then
     rm -rf "$build_dir"
   fi
-  mkdir -p "$build_dir"
+  mkdir -p "$build_dir" || return 1
   if [ ! -e "$build_dir/Makefile" ] ||
     { [ $tests = ON ] && ! bq_has_tests "$build_dir"; }; then
     echo "Configuring in $build_dir" >&2
     bq_logged "$build_dir/configure.log" cmake -S "$bq_source_dir" -B "$build_dir" \
       -G 'Unix Makefiles' -DPYTHON_EXECUTABLE=/usr/bin/python3 \
       -DCMAKE_INSTALL_PREFIX="$build_dir/install" -DCATKIN_ENABLE_TESTING=$tests "$@" || return 1
+  else  # again, if CMake's files have changed
+    bq_logged "$build_dir/configure.log" cmake --build "$build_dir" --target cmake_check_build_system || return 1
   fi
+}
+
+bq_build() {
+  local tests='' build_dir
+  if [ "$1" = --with-tests ]; then
+    tests=$1
+    shift
+  fi
+  build_dir=$1
+  shift
+  bq_configure $tests "$build_dir" || return 1
   echo "Building in $build_dir" >&2
-  bq_logged "$build_dir/build.log" cmake --build "$build_dir" --target "${targets[@]}" \
+  bq_logged "$build_dir/build.log" cmake --build "$build_dir" --target "$@" \
     -- -j "$(nproc)" || return 1
   bq_source "$build_dir/devel/setup.bash"
 }

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What test/run counts."""
 import os
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -134,6 +135,20 @@ class RunTests(unittest.TestCase):
         code = 'import sys; open(sys.argv[1][19:], "w").write(%r); exit(1)' % (
             '<testsuite><testcase name="a" result="skipped"/></testsuite>')
         self.assertEqual([case.outcome for case in self.run_command('gtest', code)], [SKIPPED, FAILED])
+
+    def refusal(self, *arguments):
+        """What test/run says of arguments that it refuses before it does anything."""
+        run = os.path.join(os.path.dirname(run_tests.__file__), 'run')
+        done = subprocess.run([run] + list(arguments), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              universal_newlines=True, timeout=60)
+        self.assertEqual(done.returncode, 2, done.stdout)
+        return done.stdout
+
+    def test_unknown_options_are_refused_before_anything_is_built(self):
+        self.assertEqual(self.refusal('--bogus'), 'test/run knows no option --bogus; see test/run --help\n')
+        self.assertIn('--bogus', self.refusal('--yes', 'sanitize', '--verbose', '--bogus'))
+        self.assertIn('regular expression', self.refusal('--allow-skips'))
+        self.assertIn('no benchmark bogus', self.refusal('benchmark', 'bogus'))
 
 
 if __name__ == '__main__':
