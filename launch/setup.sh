@@ -165,10 +165,11 @@ bq_configure() {
   mkdir -p "$build_dir" || return 1
   if [ ! -e "$build_dir/Makefile" ] ||
     { [ $tests = ON ] && ! bq_has_tests "$build_dir"; }; then
+    # roslaunch looks for files in the whole checkout, but for hidden folders: what is installed must not be found twice.
     echo "Configuring in $build_dir" >&2
     bq_logged "$build_dir/configure.log" cmake -S "$bq_source_dir" -B "$build_dir" \
       -G 'Unix Makefiles' -DPYTHON_EXECUTABLE=/usr/bin/python3 \
-      -DCMAKE_INSTALL_PREFIX="$build_dir/install" -DCATKIN_ENABLE_TESTING=$tests "$@" || return 1
+      -DCMAKE_INSTALL_PREFIX="$build_dir/.install" -DCATKIN_ENABLE_TESTING=$tests "$@" || return 1
   else  # again, if CMake's files have changed
     bq_logged "$build_dir/configure.log" cmake --build "$build_dir" --target cmake_check_build_system || return 1
   fi
