@@ -163,9 +163,14 @@ TopicParameters readTopic(const std::string& name, const XmlRpcValue& value) {
 
 std::vector<TopicParameters> readTopics(const std::string& name, const XmlRpcValue& value) {
   if (value.getType() != XmlRpcValue::TypeArray || value.size() == 0) {
-    refuse(name, value,
-           "a list of at least one topic, each a name or a struct: "
-           "[boxes, {topic: walls, timeout: 1.5, required: false}]");
+    std::string allowed =
+        "a list of at least one topic, each a name or a struct: "
+        "[boxes, {topic: walls, timeout: 1.5, required: false}]";
+    if (value.getType() == XmlRpcValue::TypeString) {
+      allowed +=
+          "; a node's command line sets only strings and numbers, box_query.launch also lists";
+    }
+    refuse(name, value, allowed);
   }
   std::vector<TopicParameters> topics;
   std::vector<std::string> resolved;

@@ -115,7 +115,7 @@ TEST(Parameters, RefusalsNameTheParameterItsValueAndWhatIsAllowed) {
        "an integer from 1 to 64"},
       {"service_threads", XmlRpcValue(0), "/node/service_threads", "0", "1 to 64"},
       {"service_threads", XmlRpcValue(true), "/node/service_threads", "true", "an integer"},
-      {"box_topics", XmlRpcValue("boxes"), "/node/box_topics", "\"boxes\"", "a list"},
+      {"box_topics", XmlRpcValue("boxes"), "/node/box_topics", "\"boxes\"", "box_query.launch"},
       {"box_topics", listOf({}), "/node/box_topics", "", "at least one"},
       {"box_topics", listOf({XmlRpcValue("a"), XmlRpcValue(7)}), "/node/box_topics[1]", "7",
        "name"},
