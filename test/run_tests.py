@@ -21,15 +21,15 @@ PASSED, FAILED, SKIPPED = 'passed', 'failed', 'skipped'
 SKIP_CODE = 77  # what a script returns if it cannot be run here; its last line says why
 GRACE = 15.0    # [s] from a time limit's SIGINT to SIGKILL
 
-Test = namedtuple('Test', 'name kind time_limit command')
+Test = namedtuple('Test', 'name kind time_limit targets command')
 Case = namedtuple('Case', 'name outcome seconds text')
 
 
 def read_list(path):
-    """The tests of a file that CMake has written: name, kind, time limit and command, separated by tabs."""
+    """The tests of a file that CMake has written: name, kind, time limit, targets and command, separated by tabs."""
     with open(path) as lines:
         rows = [line.rstrip('\n').split('\t') for line in lines]
-    return [Test(row[0], row[1], float(row[2]), row[3:]) for row in rows]
+    return [Test(row[0], row[1], float(row[2]), row[3].split(), row[4:]) for row in rows]
 
 
 def read_case(element):
@@ -69,6 +69,11 @@ def read_results(folder):
                 found = [case for case in found if case.outcome == FAILED]
             cases += found
     return cases
+
+
+def targets_of(tests):
+    """What is built for these tests, each once."""
+    return sorted({target for test in tests for target in test.targets})
 
 
 def command_of(test, folder):
@@ -197,7 +202,7 @@ def main():
     parser.add_argument('--allow-skips', default='', metavar='REGEX',
                         help='a skip counts as failed unless this matches its name and reason')
     parser.add_argument('--without-scripts', action='store_true', help='only programs that were built here')
-    parser.add_argument('--only-check', action='store_true', help='whether there are such tests; runs none')
+    parser.add_argument('--targets', action='store_true', help='print what is to be built for these tests; run none')
     parser.add_argument('names', nargs='*', metavar='NAME', help='only tests whose name contains NAME')
     arguments = parser.parse_args()
     tests = [test for test in read_list(os.path.join(arguments.build_dir, 'tests.txt'))
@@ -205,7 +210,10 @@ def main():
     for name in arguments.names:
         if not any(name in test.name for test in tests):
             parser.error('no test is named like %s; there are %s' % (name, ' '.join(test.name for test in tests)))
-    if arguments.only_check:
+    if arguments.names:
+        tests = [test for test in tests if any(name in test.name for name in arguments.names)]
+    if arguments.targets:
+        print('\n'.join(targets_of(tests)))
         return 0
 
     ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)  # PR_SET_CHILD_SUBREAPER
@@ -220,8 +228,6 @@ def main():
         os.symlink(os.path.abspath(arguments.build_dir), build_dir)
         environment['ROS_HOME'] = os.path.join(build_dir, 'ros_home')
         for test in tests:
-            if arguments.names and not any(name in test.name for name in arguments.names):
-                continue
             folder = os.path.join(build_dir, 'test_results', test.name)
             results = run(test, folder, environment, arguments.verbose)
             for case in without_unexpected_skips(results, arguments.allow_skips):

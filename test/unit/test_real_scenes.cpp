@@ -3,7 +3,8 @@
 // Scenes of the real world, shelves, cages and traffic, against exact arithmetic, to the last bit.
 // Each scene is asked 52 rays and 52 segments: at least a quarter of either outcome, and more
 // than a tenth that touch a box or run along its face. Skipped where the environment variable
-// BOX_QUERY_SHARED does not name the directory that holds data/.
+// BOX_QUERY_SHARED does not name the directory that holds data/. BOX_QUERY_SCENE_STEP=n asks only
+// every n-th scene, for slow builds.
 #include "reference/oracle.h"
 #include "reference/scene_queries.h"
 #include "ros/box_csv.h"
@@ -145,6 +146,11 @@ void expectAllFound(const Scene& scene, const Component& component, const Boxes&
   }
 }
 
+std::size_t sceneStep() {
+  const char* step = std::getenv("BOX_QUERY_SCENE_STEP");
+  return step ? static_cast<std::size_t>(std::max(1, std::atoi(step))) : 1;
+}
+
 class RealScenes : public testing::TestWithParam<File> {
  protected:
   void SetUp() override {
@@ -176,7 +182,8 @@ class RealScenes : public testing::TestWithParam<File> {
   void forEachQuery(const Random& random, const Touching& touching, const Answer& answer,
                     const Outcome& outcome, const Ask& ask) {
     int touchable = 0;
-    for (std::size_t s = 0; s < scenes_.size() && !HasFailure(); ++s) {
+    const std::size_t step = sceneStep();
+    for (std::size_t s = 0; s < scenes_.size() && !HasFailure(); s += step) {
       const Boxes& boxes = scenes_[s];
       const Scene scene(std::vector<Box>(boxes.given.begin(), boxes.given.end()));
       Sampler sampler(s);
@@ -205,7 +212,9 @@ class RealScenes : public testing::TestWithParam<File> {
         ASSERT_GE(touched, kQueries / 10) << "scene " << s;
       }
     }
-    EXPECT_EQ(touchable, GetParam().touchable);
+    if (step == 1) {
+      EXPECT_EQ(touchable, GetParam().touchable);
+    }
   }
 
   template <typename Ask>

@@ -57,7 +57,7 @@ class RunTests(unittest.TestCase):
 
     def run_command(self, kind, *command, limit=30.0):
         """What the runner says of a command: it is python code with the result folder as its argument."""
-        test = Test('a_test', kind, limit, [sys.executable, '-c'] + list(command))
+        test = Test('a_test', kind, limit, [], [sys.executable, '-c'] + list(command))
         return run_tests.run(test, os.path.join(self.folder.name, 'of a_test'), dict(os.environ), False)
 
     def test_reads_every_outcome_of_gtest(self):
@@ -135,6 +135,15 @@ class RunTests(unittest.TestCase):
         code = 'import sys; open(sys.argv[1][19:], "w").write(%r); exit(1)' % (
             '<testsuite><testcase name="a" result="skipped"/></testsuite>')
         self.assertEqual([case.outcome for case in self.run_command('gtest', code)], [SKIPPED, FAILED])
+
+    def test_only_what_is_named_is_built(self):
+        self.write('tests.txt', 'test_a\tgtest\t300\tp_test_a\t/bin/a\n'
+                                'test_b\trostest\t300\tall p_test_b\t/b.test\n'
+                                'lint\tscript\t9\tall tests\t/bin/lint\t--strict\n')
+        tests = run_tests.read_list(os.path.join(self.folder.name, 'tests.txt'))
+        self.assertEqual(tests[2], Test('lint', 'script', 9.0, ['all', 'tests'], ['/bin/lint', '--strict']))
+        self.assertEqual(run_tests.targets_of(tests[:2]), ['all', 'p_test_a', 'p_test_b'])
+        self.assertEqual(run_tests.targets_of(tests[:1]), ['p_test_a'])
 
     def refusal(self, *arguments):
         """What test/run says of arguments that it refuses before it does anything."""
