@@ -34,13 +34,13 @@ inline Estimate quotient(const Certified& num, const Certified& den) {
       isPowerOfTwo(den.value().hi)) {
     return {value, 0.0};  // exact, as ties must be
   }
-  // Relative errors of operands add up; beyond 2^-30 this is not tight enough to be of any use.
-  const double relative =
-      num.error() / std::fabs(num.value().hi) + den.error() / std::fabs(den.value().hi);
-  if (!(relative < 0x1p-30)) {
+  const double size = std::fabs(den.value().hi);
+  if (!(den.error() < 0x1p-30 * size)) {
     return Estimate::unknown();
   }
-  return {value, std::fabs(value.hi) * ((relative + bounds::kOperation) * bounds::kRelative)};
+  // (num + a) / (den + b) is off by (a - b num / den) / (den + b).
+  const double error = (num.error() + std::fabs(value.hi) * den.error()) / size;
+  return {value, (error + std::fabs(value.hi) * bounds::kOperation) * bounds::kRelative};
 }
 
 /// a * b for an exact factor or one that is off by kOperation relative.

@@ -33,91 +33,49 @@ inline exact::DoubleDouble dot(const exact::DoubleDouble* a, const exact::Double
   return exact::fastTwoSum(r.hi, (s.lo + r.lo) + ((c0 + c1) + c2));
 }
 
-/// Parameters at the planes of one kind of box, in double-double.
-template <typename T, typename BoxType>
-class Planes;
+/// The parameter, num / den with den > 0, at which a component passes the face of a box on the
+/// negative or the positive side of an axis.
+using CertifiedParameter = exact::BasicParameter<exact::Certified>;
 
 template <typename T>
-class Planes<T, AlignedBox> {
- public:
-  Planes(const T& linear, const DoubleComponent& component, const AlignedBox& box, const Rows*)
-      : linear_(linear), component_(component), box_(box) {}
-
-  bool isPositive(int axis) const { return !component_.negative[axis]; }
-
-  exact::BasicParameter<exact::Certified> at(int axis, bool max_plane) const {
-    const double plane = max_plane ? box_.max[axis] : box_.min[axis];
-    const exact::Certified num(exact::twoDiff(plane, component_.origin[axis]), 0.0);
-    const exact::Certified den(exactDirection(linear_, axis), 0.0);
-    return isPositive(axis) ? exact::BasicParameter<exact::Certified>{num, den}
-                            : exact::BasicParameter<exact::Certified>{-num, -den};
+const Vector3& startOf(const T& linear) {
+  if constexpr (kHasEnd<T>) {
+    return linear.start;
+  } else {
+    return linear.origin;
   }
-
- private:
-  const T& linear_;
-  const DoubleComponent& component_;
-  const AlignedBox& box_;
-};
+}
 
 template <typename T>
-class Planes<T, OrientedBox> {
- public:
-  Planes(const T& linear, const DoubleComponent& component, const OrientedBox& box,
-         const Rows* rows)
-      : box_(box), rows_(rows) {
-    if (rows_ == nullptr) {
-      own_rows_ = doubleDoubleRows(box.orientation);
-      rows_ = &own_rows_;
-    }
-    for (int i = 0; i < 3; ++i) {
-      offset_[i] = exact::twoDiff(component.origin[i], box.center[i]);
-      direction_[i] = exactDirection(linear, i);
-    }
-    const double n = rows_->n.hi;
-    offset_error_ = exact::bounds::kRow * n *
-                    (std::fabs(offset_[0].hi) + std::fabs(offset_[1].hi) +
-                     std::fabs(offset_[2].hi) + box.half_extents.sum());
-    direction_error_ =
-        exact::bounds::kRow * n *
-        (std::fabs(direction_[0].hi) + std::fabs(direction_[1].hi) + std::fabs(direction_[2].hi));
+CertifiedParameter parameterAtFace(const T& linear, const AlignedBox& box, int axis,
+                                   bool positive) {
+  const double plane = positive ? box.max[axis] : box.min[axis];
+  const exact::Certified num(exact::twoDiff(plane, startOf(linear)[axis]), 0.0);
+  const exact::Certified den(exactDirection(linear, axis), 0.0);
+  return den.value().hi > 0.0 ? CertifiedParameter{num, den} : CertifiedParameter{-num, -den};
+}
+
+template <typename T>
+CertifiedParameter parameterAtFace(const T& linear, const OrientedBox& box, int axis,
+                                   bool positive) {
+  const Rows rows = doubleDoubleRows(box.orientation);
+  exact::DoubleDouble offset[3];
+  exact::DoubleDouble direction[3];
+  double offset_size = box.half_extents.sum();
+  double direction_size = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    offset[i] = exact::twoDiff(startOf(linear)[i], box.center[i]);
+    direction[i] = exactDirection(linear, i);
+    offset_size += std::fabs(offset[i].hi);
+    direction_size += std::fabs(direction[i].hi);
   }
-
-  bool isPositive(int axis) { return row(axis).direction.hi > 0.0; }
-
-  exact::BasicParameter<exact::Certified> at(int axis, bool max_plane) {
-    const Row& r = row(axis);
-    const exact::DoubleDouble num = (max_plane ? r.extent : -r.extent) - r.position;
-    const bool positive = r.direction.hi > 0.0;
-    return {exact::Certified(positive ? num : -num, offset_error_),
-            exact::Certified(positive ? r.direction : -r.direction, direction_error_)};
-  }
-
- private:
-  struct Row {
-    int axis = -1;
-    exact::DoubleDouble position;
-    exact::DoubleDouble direction;
-    exact::DoubleDouble extent;
-  };
-
-  const Row& row(int axis) {
-    if (row_.axis != axis) {
-      row_.axis = axis;
-      row_.position = dot(rows_->axes[axis], offset_);
-      row_.direction = dot(rows_->axes[axis], direction_);
-      row_.extent = rows_->n * exact::DoubleDouble{box_.half_extents[axis], 0.0};
-    }
-    return row_;
-  }
-
-  const OrientedBox& box_;
-  const Rows* rows_;
-  Rows own_rows_;
-  exact::DoubleDouble offset_[3];
-  exact::DoubleDouble direction_[3];
-  double offset_error_;
-  double direction_error_;
-  Row row_;
-};
+  const exact::DoubleDouble extent = rows.n * exact::DoubleDouble{box.half_extents[axis], 0.0};
+  const exact::DoubleDouble num = (positive ? extent : -extent) - dot(rows.axes[axis], offset);
+  const exact::DoubleDouble den = dot(rows.axes[axis], direction);
+  const double unit = exact::bounds::kRow * rows.n.hi;
+  const bool goes_up = den.hi > 0.0;
+  return {{goes_up ? num : -num, unit * offset_size},
+          {goes_up ? den : -den, unit * direction_size}};
+}
 
 }  // namespace box_query

@@ -96,6 +96,7 @@ struct SlabTimes {
   double near_hi[3];
   double far_lo[3];
   double far_hi[3];
+  bool negative[3];  ///< the component goes down the axis
 };
 
 /// Encloses the parameters of entry and exit, if there are any.
@@ -174,6 +175,7 @@ inline SlabTimes slabTimes(const DoubleComponent& c, const AlignedSlabs& box) {
     t.near_hi[i] = in_plane_near ? -kInf : widenedUp(near);
     t.far_lo[i] = in_plane_far ? kInf : widenedDown(far);
     t.far_hi[i] = in_plane_far ? kInf : widenedUp(far);
+    t.negative[i] = c.negative[i];
   }
   return t;
 }
@@ -251,6 +253,7 @@ inline SlabTimes slabTimes(const DoubleComponent& c, const OrientedSlabs& box) {
     t.near_hi[i] = middle - inner;
     t.far_lo[i] = middle + inner;
     t.far_hi[i] = middle + outer;
+    t.negative[i] = d < 0.0;
   }
   return t;
 }

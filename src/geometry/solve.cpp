@@ -4,8 +4,11 @@
 #include "exact/stage_counters.h"
 #include "geometry/moved_into.h"
 #include "geometry/planes.h"
+#include "kernels/kernels.h"
 
 #include <array>
+#include <type_traits>
+#include <utility>
 #include <variant>
 
 namespace box_query {
@@ -47,40 +50,52 @@ bool identify(const SlabTimes& t, Ends& ends) {
          (to_end || (far < other_far && (!kHasEnd<T> || far < 1.0)));
 }
 
-template <typename T, typename BoxType>
-Solution solveAtAxes(const T& linear, const DoubleComponent& component, const BoxType& box,
-                     const Rows* rows, const Ends& ends) {
-  Solution solution;
+/// That the sign of a direction is right where it decides faces: where it is not, |d_i| < 15u |D|
+/// in the terms of bounds::kSlab, so that axis i alone leaves entry and exit open by more than the
+/// other axes allow, and nothing is certain.
+template <typename T>
+void setFaces(const SlabTimes& times, const Ends& ends, Solution& solution) {
   solution.num_points = 2;
   solution.started_inside = kHasStart<T> && ends.enter == Ends::kOwn;
-  Planes<T, BoxType> planes(linear, component, box, rows);
   if (ends.enter == Ends::kOwn) {
-    solution.enter = {0.0, 1.0};
+    solution.enter.t = {0.0, 1.0};
   } else {
-    const bool positive = planes.isPositive(ends.enter);
-    solution.entered.insert(ends.enter, !positive);
-    solution.enter = planes.at(ends.enter, !positive);
+    const bool positive = times.negative[ends.enter];
+    solution.entered.insert(ends.enter, positive);
+    solution.enter.axis = ends.enter;
+    solution.enter.positive = positive;
   }
   if (ends.exit == Ends::kOwn) {
-    solution.exit = {1.0, 1.0};
+    solution.exit.t = {1.0, 1.0};
   } else {
-    const bool positive = planes.isPositive(ends.exit);
+    const bool positive = !times.negative[ends.exit];
     solution.left.insert(ends.exit, positive);
-    solution.exit = planes.at(ends.exit, positive);
+    solution.exit.axis = ends.exit;
+    solution.exit.positive = positive;
   }
-  return solution;
+}
+
+/// The parameter of a crossing, worked out once.
+template <typename T, typename BoxType>
+const CertifiedParameter& parameterOf(const T& linear, const BoxType& box, Crossing& crossing) {
+  if (!crossing.t) {
+    crossing.t = parameterAtFace(linear, box, crossing.axis, crossing.positive);
+  }
+  return *crossing.t;
+}
+template <typename T>
+const CertifiedParameter& parameterOf(const T& linear, const Box& any, Crossing& crossing) {
+  return *std::visit([&](const auto& box) { return &parameterOf(linear, box, crossing); }, any);
 }
 
 template <typename Number>
-Solution solutionOf(const BasicClip<Number>& clip) {
-  Solution solution;
+void setDecisions(const BasicClip<Number>& clip, Solution& solution) {
   solution.num_points = clip.num_points;
   solution.started_inside = clip.started_inside;
   if (clip.num_points > 0) {
     solution.entered = clip.entered;
     solution.left = clip.left;
   }
-  return solution;
 }
 
 template <typename T, typename BoxType>
@@ -98,13 +113,13 @@ exact::Clip exactClip(const T& linear, const BoxType& box) {
 /// Replaces parameters from double-double rows by ones that may be known without error.
 template <typename T>
 void tighten(const T& linear, const Box& box, Solution& solution) {
-  if (solution.enter.num.error() == 0.0) {
+  if (parameterOf(linear, box, solution.enter).num.error() == 0.0) {
     return;
   }
   BasicClip<Certified> clip;
   if (std::visit([&](const auto& b) { return certifiedClip(linear, b, clip); }, box)) {
-    solution.enter = clip.enter;
-    solution.exit = clip.exit;
+    solution.enter.t = clip.enter;
+    solution.exit.t = clip.exit;
   }
 }
 
@@ -126,25 +141,35 @@ bool isAxisParallel(const T& linear) {
   return zero[0] + zero[1] + zero[2] == 2;
 }
 
-exact::Estimate estimate(const Solution& solution, End end) {
-  const auto& t = end == End::kEnter ? solution.enter : solution.exit;
-  return exact::quotient(t.num, t.den);
+template <typename T, typename BoxType>
+const exact::Estimate& estimateOf(const T& linear, const BoxType& box, Crossing& crossing) {
+  if (!crossing.estimate) {
+    const CertifiedParameter& t = parameterOf(linear, box, crossing);
+    crossing.estimate = exact::quotient(t.num, t.den);
+  }
+  return *crossing.estimate;
+}
+
+Crossing& crossingAt(Solution& solution, End end) {
+  return end == End::kEnter ? solution.enter : solution.exit;
 }
 
 /// The distance in metres that belongs to an end.
 ///
 /// Along an axis of the world the distance to a plane across it is num itself, which is exact for
 /// an aligned box and would often be a tie that Ziv's test cannot resolve.
-template <typename T>
-exact::Estimate estimatedRange(const T& linear, const Solution& solution, End end,
+template <typename T, typename BoxType>
+exact::Estimate estimatedRange(const T& linear, const BoxType& box, Crossing& crossing,
                                const DoubleDouble& length) {
-  const auto& t = end == End::kEnter ? solution.enter : solution.exit;
-  const DoubleDouble den = t.den.value();
-  if (t.num.error() == 0.0 && t.den.error() == 0.0 && den.hi == length.hi && den.lo == length.lo &&
-      isAxisParallel(linear)) {
-    return {t.num.value(), 0.0};
+  if (std::is_same_v<BoxType, AlignedBox> || crossing.t) {
+    const CertifiedParameter& t = parameterOf(linear, box, crossing);
+    const DoubleDouble den = t.den.value();
+    if (t.num.error() == 0.0 && t.den.error() == 0.0 && den.hi == length.hi &&
+        den.lo == length.lo && isAxisParallel(linear)) {
+      return {t.num.value(), 0.0};
+    }
   }
-  return exact::product(estimate(solution, end), length);
+  return exact::product(estimateOf(linear, box, crossing), length);
 }
 
 const exact::Parameter& exactEnd(const exact::Clip& clip, End end) {
@@ -155,15 +180,6 @@ template <typename T>
 exact::Dyadic squaredLength(const T& linear) {
   const auto direction = exact::component(linear).direction;
   return exact::dot(direction, direction);
-}
-
-template <typename T>
-const Vector3& start(const T& linear) {
-  if constexpr (kHasEnd<T>) {
-    return linear.start;
-  } else {
-    return linear.origin;
-  }
 }
 
 /// Whether the component meets the box, where the filter could not tell.
@@ -199,45 +215,116 @@ bool meetsByStages(const T& linear, const BoxType& box, const Prepared<SlabsType
   return meetsSlowly(linear, component, box);
 }
 
+/// The same by a kernel, of which more comes than the faces.
+/// @return whether it is clear
+template <typename T>
+bool solveByKernel(const T& linear, const DoubleComponent& component, const OrientedBox& box,
+                   Solution& solution) {
+  const auto cross = kernels::active().cross;
+  if (cross == nullptr) {
+    return false;
+  }
+  double direction_low[3] = {0.0, 0.0, 0.0};
+  if constexpr (kHasEnd<T>) {
+    for (int i = 0; i < 3; ++i) {
+      direction_low[i] = exactDirection(linear, i).lo;
+    }
+  }
+  const kernels::CrossingQuery query{box.orientation.coeffs().data(),
+                                     box.center.data(),
+                                     box.half_extents.data(),
+                                     component.origin,
+                                     component.direction,
+                                     direction_low,
+                                     kHasStart<T>,
+                                     kHasEnd<T>};
+  kernels::Crossing enter;
+  kernels::Crossing exit;
+  switch (cross(query, enter, exit)) {
+    case kernels::Crossed::kMiss:
+      return true;
+    case kernels::Crossed::kUnclear:
+      return false;
+    case kernels::Crossed::kHit:
+      break;
+  }
+  const auto set = [](const kernels::Crossing& from, double own, Crossing& to) {
+    to.axis = from.axis;
+    to.positive = from.positive;
+    if (from.axis == kernels::Crossing::kOwn) {
+      to.t = {own, 1.0};
+    } else {
+      to.estimate = {{from.t[0], from.t[1]}, from.error};
+    }
+  };
+  solution.num_points = 2;
+  set(enter, 0.0, solution.enter);
+  set(exit, 1.0, solution.exit);
+  if (enter.axis == kernels::Crossing::kOwn) {
+    solution.started_inside = kHasStart<T>;
+  } else {
+    solution.entered.insert(enter.axis, enter.positive);
+  }
+  if (exit.axis != kernels::Crossing::kOwn) {
+    solution.left.insert(exit.axis, exit.positive);
+  }
+  return true;
+}
+
 template <typename T, typename BoxType, typename SlabsType>
 Solution solve(const T& linear, const DoubleComponent& component, const BoxType& box,
-               const Prepared<SlabsType>& prepared, const Rows* rows) {
+               const Prepared<SlabsType>& prepared) {
+  Solution solution;  // the only one, made where the caller wants it
+  const bool compact = component.compact && prepared.compact;
   if (component.moderate && prepared.moderate) {
+    if constexpr (std::is_same_v<BoxType, OrientedBox>) {
+      if (compact && solveByKernel(linear, component, box, solution)) {
+        return solution;
+      }
+    }
     const SlabTimes times = slabTimes(component, prepared.slabs);
     const Enclosure e = enclose<T>(times);
     if (e.isMiss()) {
-      return {};
+      return solution;
     }
-    if (component.compact && prepared.compact) {
+    if (compact) {
       Ends ends;
       if (e.enter_hi < e.exit_lo && identify<T>(times, ends)) {
-        return solveAtAxes(linear, component, box, rows, ends);
+        setFaces<T>(times, ends, solution);
+        return solution;
       }
       BasicClip<Certified> clip;
       if (certifiedClip(linear, box, clip)) {
-        Solution solution = solutionOf(clip);
-        solution.enter = clip.enter;
-        solution.exit = clip.exit;
+        setDecisions(clip, solution);
+        solution.enter.t = clip.enter;
+        solution.exit.t = clip.exit;
         return solution;
       }
     }
   }
   ++exact::stageCounters().exact_decisions;
-  const exact::Clip clip = exactClip(linear, box);
-  Solution solution = solutionOf(clip);
-  solution.exactly = clip;
+  solution.exactly = exactClip(linear, box);
+  setDecisions(*solution.exactly, solution);
   return solution;
 }
 
 template <typename T>
 int compareEntries(const T& linear, const Box& box_a, Solution& a, const Box& box_b, Solution& b) {
   if (!a.exactly && !b.exactly) {
+    if (a.enter.estimate && b.enter.estimate) {
+      const Certified gap = Certified(a.enter.estimate->value, a.enter.estimate->error) -
+                            Certified(b.enter.estimate->value, b.enter.estimate->error);
+      if (const int order = gap.sign(); order != exact::kUnknownSign && order != 0) {
+        return order;
+      }
+    }
     for (const bool tightened : {false, true}) {
       if (tightened) {
         tighten(linear, box_a, a);
         tighten(linear, box_b, b);
       }
-      const int order = exact::compare(a.enter, b.enter);
+      const int order =
+          exact::compare(parameterOf(linear, box_a, a.enter), parameterOf(linear, box_b, b.enter));
       if (order != exact::kUnknownSign) {
         return order;
       }
@@ -261,7 +348,8 @@ DoubleDouble directionLength(const T& linear) {
 template <typename T, typename BoxType>
 double roundedParameter(const T& linear, const BoxType& box, Solution& solution, End end) {
   double rounded = 0.0;
-  if (!solution.exactly && exact::round(estimate(solution, end), rounded)) {
+  if (!solution.exactly &&
+      exact::round(estimateOf(linear, box, crossingAt(solution, end)), rounded)) {
     return rounded;
   }
   return exact::rounded(exactEnd(exactly(linear, box, solution), end));
@@ -271,7 +359,8 @@ template <typename T, typename BoxType>
 double roundedRange(const T& linear, const BoxType& box, Solution& solution, End end,
                     const DoubleDouble& length) {
   double rounded = 0.0;
-  if (!solution.exactly && exact::round(estimatedRange(linear, solution, end, length), rounded)) {
+  if (!solution.exactly &&
+      exact::round(estimatedRange(linear, box, crossingAt(solution, end), length), rounded)) {
     return rounded;
   }
   return exact::roundedRange(exactEnd(exactly(linear, box, solution), end), squaredLength(linear));
@@ -284,7 +373,7 @@ bool isEnteredWithin(const T& linear, const BoxType& box, Solution& solution, do
     return true;
   }
   if (!solution.exactly) {
-    const exact::Estimate range = estimatedRange(linear, solution, End::kEnter, length);
+    const exact::Estimate range = estimatedRange(linear, box, solution.enter, length);
     const Certified excess = Certified(range.value, range.error) - Certified(max_range);
     if (excess.sign() != exact::kUnknownSign) {
       return excess.sign() <= 0;
@@ -303,7 +392,7 @@ Vector3 pointAt(const T& linear, const DoubleComponent& component, const BoxType
   const FaceSet faces = end == End::kEnter ? solution.entered : solution.left;
   if constexpr (kHasStart<T>) {
     if (t == 0.0 && solution.started_inside) {
-      return start(linear);
+      return startOf(linear);
     }
   }
   if constexpr (kHasEnd<T>) {
@@ -312,13 +401,13 @@ Vector3 pointAt(const T& linear, const DoubleComponent& component, const BoxType
     }
   }
   const Vector3 direction(component.direction[0], component.direction[1], component.direction[2]);
-  return movedInto(box, start(linear) + t * direction, faces);
+  return movedInto(box, startOf(linear) + t * direction, faces);
 }
 
 #define BOX_QUERY_INSTANTIATE(T, BoxType, SlabsType)                                               \
   template bool meetsByStages(const T&, const BoxType&, const Prepared<SlabsType>&);               \
   template Solution solve(const T&, const DoubleComponent&, const BoxType&,                        \
-                          const Prepared<SlabsType>&, const Rows*);                                \
+                          const Prepared<SlabsType>&);                                             \
   template double roundedParameter(const T&, const BoxType&, Solution&, End);                      \
   template double roundedRange(const T&, const BoxType&, Solution&, End, const DoubleDouble&);     \
   template bool isEnteredWithin(const T&, const BoxType&, Solution&, double, const DoubleDouble&); \

@@ -6,6 +6,7 @@
 
 #include "exact/clip.h"
 #include "exact/estimate.h"
+#include "geometry/planes.h"
 #include "geometry/prepared_box.h"
 #include "geometry/slabs.h"
 
@@ -32,6 +33,15 @@ inline bool meets(const T& linear, const OrientedBox& box,
   return quick.certain ? quick.hit : meetsByStages(linear, box, prepared);
 }
 
+/// An end of what of a component lies in a box, at a face or at the component's own end. What is
+/// not known of its parameter yet is worked out for whoever asks.
+struct Crossing {
+  int axis = 0;
+  bool positive = false;
+  std::optional<CertifiedParameter> t;
+  std::optional<exact::Estimate> estimate;
+};
+
 /// What of a component lies in a box: everything is decided, nothing is rounded.
 struct Solution {
   // Not defaulted: value-initialisation would clear `exactly`, 2 kB, every time.
@@ -41,17 +51,16 @@ struct Solution {
   bool started_inside = false;
   FaceSet entered;
   FaceSet left;
-  /// Parameters of entry and exit; without meaning where `exactly` is set.
-  exact::BasicParameter<exact::Certified> enter;
-  exact::BasicParameter<exact::Certified> exit;
+  /// Entry and exit; without meaning where `exactly` is set.
+  Crossing enter;
+  Crossing exit;
   /// The exact stage's own solution, where it was needed.
   std::optional<exact::Clip> exactly;
 };
 
-/// @param rows of an oriented box, where they are at hand
 template <typename T, typename BoxType, typename SlabsType>
 Solution solve(const T& linear, const DoubleComponent& component, const BoxType& box,
-               const Prepared<SlabsType>& prepared, const Rows* rows = nullptr);
+               const Prepared<SlabsType>& prepared);
 
 /// -1, 0 or 1 as the first box is entered before, with or after the second.
 template <typename T>

@@ -23,6 +23,10 @@ struct Kernels {
 
   /// Finds all boxes that may be met.
   void (*all)(const SceneView&, const RayQuery&, Found& found, Take take, void* context);
+
+  /// Where a component enters and leaves a box, if it is clear which faces it crosses there. Null
+  /// where it is faster to work out one face after the other.
+  Crossed (*cross)(const CrossingQuery&, Crossing& enter, Crossing& exit);
 };
 
 extern const Kernels kPortable;

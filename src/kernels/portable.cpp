@@ -20,6 +20,6 @@ namespace portable {
 // clang-format on
 }  // namespace portable
 
-const Kernels kPortable = {"portable", portable::closest, portable::any, portable::all};
+const Kernels kPortable = {"portable", portable::closest, portable::any, portable::all, nullptr};
 
 }  // namespace box_query::kernels

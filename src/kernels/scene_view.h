@@ -100,4 +100,31 @@ struct Found {
 /// far as the caller knows; of the others: negative to end the query
 using Take = double (*)(void* context, const Found& found);
 
+/// A component and an oriented box.
+///
+/// @pre All numbers are compact (see bounds::kSmallest), the direction is not zero.
+struct CrossingQuery {
+  const double* quaternion;  ///< x, y, z, w
+  const double* center;
+  const double* half_extents;
+  const double* origin;
+  const double* direction;
+  const double* direction_low;  ///< what the direction lacks of the exact one
+  bool has_start;
+  bool has_end;
+};
+
+/// Where a component crosses the surface of a box: at one face and certainly no other, or at the
+/// component's own start or end.
+struct Crossing {
+  static constexpr int kOwn = -1;
+  int axis;
+  bool positive;  ///< the face is on the positive side of the axis
+  /// The parameter: t[0] + t[1] within an error.
+  double t[2];
+  double error;
+};
+
+enum class Crossed { kMiss, kHit, kUnclear };
+
 }  // namespace box_query::kernels

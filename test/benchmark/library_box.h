@@ -10,19 +10,14 @@ namespace box_query::benchmark {
 
 /// A box as the library prepares it: what the filter reads, apart from what only slow stages do.
 struct LibraryBox {
-  struct Slow {
-    OrientedBox box;
-    Rows rows;
-  };
   Prepared<OrientedSlabs> filter;
-  std::unique_ptr<const Slow> slow;
+  std::unique_ptr<const OrientedBox> slow;
 
-  const OrientedBox& box() const { return slow->box; }
+  const OrientedBox& box() const { return *slow; }
 };
 
 inline LibraryBox libraryBox(const OrientedBox& box) {
-  return {prepared(box), std::make_unique<LibraryBox::Slow>(
-                             LibraryBox::Slow{box, doubleDoubleRows(box.orientation)})};
+  return {prepared(box), std::make_unique<const OrientedBox>(box)};
 }
 
 }  // namespace box_query::benchmark

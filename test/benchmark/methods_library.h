@@ -33,8 +33,7 @@ struct LibraryRounded {
   static Prepared prepare(const OrientedBox& box) { return libraryBox(box); }
   template <typename Component>
   static Answer ask(const Component& component, const Prepared& box) {
-    Solution solution =
-        solve(component, doubleComponent(component), box.box(), box.filter, &box.slow->rows);
+    Solution solution = solve(component, doubleComponent(component), box.box(), box.filter);
     if (solution.num_points == 0) {
       return {};
     }

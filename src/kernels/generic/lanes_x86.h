@@ -11,7 +11,8 @@ static inline Double4 load4(const double* p) {
 static inline Double4 all4(double x) {
   return {_mm256_set1_pd(x)};
 }
-/// The three numbers at p, and 0.
+/// The three numbers at p, and 0. Read one by one: just written by themselves, they cannot be had
+/// at once yet.
 static inline Double4 lanes4(const double* p) {
   return {_mm256_setr_pd(p[0], p[1], p[2], 0.0)};
 }
@@ -79,6 +80,44 @@ static inline Pair smallest3(Double4 a, Double4 b) {
 }
 static inline void prefetch(const void* p) {
   _mm_prefetch(static_cast<const char*>(p), _MM_HINT_T0);
+}
+/// The rest of the product p = a * b, exactly, where nothing underflows.
+static inline Double4 restOfProduct(Double4 a, Double4 b, Double4 p) {
+  return {_mm256_fmsub_pd(a.v, b.v, p.v)};
+}
+static inline Double4 negated(Double4 a) {
+  return {_mm256_xor_pd(a.v, _mm256_set1_pd(-0.0))};
+}
+/// The sum of the first three lanes, everywhere.
+static inline Double4 sumOf3(Double4 a) {
+  return {_mm256_add_pd(_mm256_add_pd(_mm256_permute4x64_pd(a.v, _MM_SHUFFLE(0, 0, 0, 0)),
+                                      _mm256_permute4x64_pd(a.v, _MM_SHUFFLE(1, 1, 1, 1))),
+                        _mm256_permute4x64_pd(a.v, _MM_SHUFFLE(2, 2, 2, 2)))};
+}
+/// Lanes whose sign is set where a >= b.
+static inline Double4 isNotBelow(Double4 a, Double4 b) {
+  return {_mm256_cmp_pd(a.v, b.v, _CMP_GE_OQ)};
+}
+/// a times -1 where b is negative.
+static inline Double4 withSignOf(Double4 a, Double4 b) {
+  return {_mm256_xor_pd(a.v, _mm256_and_pd(b.v, _mm256_set1_pd(-0.0)))};
+}
+/// (y, z, x) of (x, y, z), and (z, x, y).
+static inline Double4 turned(Double4 a) {
+  return {_mm256_permute4x64_pd(a.v, _MM_SHUFFLE(3, 0, 2, 1))};
+}
+static inline Double4 turnedTwice(Double4 a) {
+  return {_mm256_permute4x64_pd(a.v, _MM_SHUFFLE(3, 1, 0, 2))};
+}
+static inline void store4(double* p, Double4 a) {
+  _mm256_store_pd(p, a.v);
+}
+/// A bit for each of the first three lanes in which a >= b, and in which the sign is set.
+static inline unsigned notBelow3(Double4 a, Double4 b) {
+  return static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(a.v, b.v, _CMP_GE_OQ))) & 7U;
+}
+static inline unsigned signs3(Double4 a) {
+  return static_cast<unsigned>(_mm256_movemask_pd(a.v)) & 7U;
 }
 static inline int lowestBit(std::uint32_t bits) {
   return __builtin_ctz(bits);

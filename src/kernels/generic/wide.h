@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Double-doubles (exact/double_double.h), four at a time, and what exact/clip.h makes of a box and
+// a component in them, all three axes side by side.
+
+/// The unevaluated sum hi + lo.
+struct Wide4 {
+  Double4 hi;
+  Double4 lo;
+};
+
+static inline Wide4 twoSum(Double4 a, Double4 b) {
+  const Double4 sum = a + b;
+  const Double4 rest = sum - a;
+  return {sum, (a - (sum - rest)) + (b - rest)};
+}
+static inline Wide4 fastTwoSum(Double4 a, Double4 b) {
+  const Double4 sum = a + b;
+  return {sum, b - (sum - a)};
+}
+static inline Wide4 twoProduct(Double4 a, Double4 b) {
+  const Double4 product = a * b;
+  return {product, restOfProduct(a, b, product)};
+}
+// None of these makes lo small beside hi again, which would be the longest part of the way to a
+// result; normalized() does where it matters.
+static inline Wide4 operator+(const Wide4& a, const Wide4& b) {
+  const Wide4 sum = twoSum(a.hi, b.hi);
+  return {sum.hi, sum.lo + (a.lo + b.lo)};
+}
+static inline Wide4 operator-(const Wide4& a, const Wide4& b) {
+  const Wide4 sum = twoSum(a.hi, negated(b.hi));
+  return {sum.hi, sum.lo + (a.lo - b.lo)};
+}
+static inline Wide4 operator*(const Wide4& a, Double4 b) {
+  const Wide4 product = twoProduct(a.hi, b);
+  return {product.hi, fused(a.lo, b, product.lo)};
+}
+static inline Wide4 turned(const Wide4& a) {
+  return {turned(a.hi), turned(a.lo)};
+}
+static inline Wide4 turnedTwice(const Wide4& a) {
+  return {turnedTwice(a.hi), turnedTwice(a.lo)};
+}
+static inline Wide4 withSignOf(const Wide4& a, Double4 b) {
+  return {withSignOf(a.hi, b), withSignOf(a.lo, b)};
+}
+static inline Wide4 normalized(const Wide4& a) {
+  return fastTwoSum(a.hi, a.lo);
+}
+/// a0 b0 + a1 b1 + a2 b2.
+static inline Wide4 sumOfProducts(const Wide4& a0, const Wide4& b0, const Wide4& a1,
+                                  const Wide4& b1, const Wide4& a2, const Wide4& b2) {
+  const Wide4 p0 = twoProduct(a0.hi, b0.hi);
+  const Wide4 p1 = twoProduct(a1.hi, b1.hi);
+  const Wide4 p2 = twoProduct(a2.hi, b2.hi);
+  const Double4 c0 = p0.lo + fused(a0.hi, b0.lo, a0.lo * b0.hi);
+  const Double4 c1 = p1.lo + fused(a1.hi, b1.lo, a1.lo * b1.hi);
+  const Double4 c2 = p2.lo + fused(a2.hi, b2.lo, a2.lo * b2.hi);
+  const Wide4 s = twoSum(p0.hi, p1.hi);
+  const Wide4 r = twoSum(s.hi, p2.hi);
+  return {r.hi, (s.lo + r.lo) + ((c0 + c1) + c2)};
+}
+/// a / b of normalized ones, given q, which is a.hi / b.hi rounded as the product of a.hi and the
+/// rounded `inverse` of b.hi: q is off by 2u, so that its rest is exact but for 10u^2 and is
+/// divided with an error of 3u of 6u.
+static inline Wide4 quotient(const Wide4& a, const Wide4& b, Double4 q, Double4 inverse) {
+  const Wide4 product = twoProduct(q, b.hi);
+  const Double4 rest = ((a.hi - product.hi) - product.lo) + fusedNegative(q, b.lo, a.lo);
+  return fastTwoSum(q, rest * inverse);
+}
