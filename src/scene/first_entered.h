@@ -93,9 +93,28 @@ class FirstEntered {
   };
 
   void take(Entry&& entry) {
-    if (!any() || entry.enter_hi < best_.enter_lo || isBefore(entry, best_)) {
+    if (!any() || entry.enter_hi < best_.enter_lo ||
+        (!isBehindEnteredFace(entry) && isBefore(entry, best_))) {
       best_ = std::move(entry);
     }
+  }
+
+  /// Whether an aligned box begins at a face of the best one that is entered, so that it is entered
+  /// with it or later, and has the higher index: the rule in a row of shelves.
+  bool isBehindEnteredFace(const Entry& entry) {
+    const auto* box = std::get_if<AlignedBox>(&boxes_[entry.box]);
+    const auto* best = std::get_if<AlignedBox>(&boxes_[best_.box]);
+    if (box == nullptr || best == nullptr || entry.box < best_.box) {
+      return false;
+    }
+    const FaceSet entered = solutionOf(best_).entered;
+    for (int i = 0; i < 3; ++i) {
+      if ((entered.contains(i, false) && box->min[i] == best->min[i]) ||
+          (entered.contains(i, true) && box->max[i] == best->max[i])) {
+        return true;
+      }
+    }
+    return false;
   }
 
   bool isBefore(Entry& a, Entry& b) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <box_query/scene.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -168,6 +169,22 @@ TEST(BoxMask, LooksAtWhatItIsTold) {
   BoxMask none(70, false);
   none.set(69, true);
   EXPECT_TRUE(!none[0] && none[69]);
+}
+
+TEST(SceneCast, BoxesBehindOneFrontTieToTheLowestIndex) {
+  // Fronts at x = 2; what begins above y = 1 is entered later, through its side.
+  std::vector<Box> boxes;
+  for (int i = 0; i < 300; ++i) {
+    const double low = i % 3 == 0 ? -1.0 : 1.0;
+    boxes.emplace_back(AlignedBox{{2.0, low, -1.0}, {4.0 + (i * 7) % 11, 3.0, 1.0}});
+  }
+  std::rotate(boxes.begin(), boxes.begin() + 1, boxes.end());  // the first two begin above
+  const Scene scene(boxes);
+  for (const double slope : {0.25, 0.5, 0.75}) {
+    const Hit hit = scene.cast(Ray{{0.0, 0.0, 0.0}, {1.0, slope, 0.0}});
+    EXPECT_EQ(slope < 0.5 ? 2U : 0U, hit.box) << slope;
+    EXPECT_EQ(2.0, hit.t);
+  }
 }
 
 }  // namespace
