@@ -93,6 +93,26 @@ Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noe
                first.solution(), max_range);
 }
 
+ClosestBox Scene::castClosest(const Ray& ray, double max_range,
+                              const BoxMask* mask) const noexcept {
+  const DoubleComponent component = doubleComponent(ray);
+  const Reach reach = reachOf(component, max_range);
+  FirstEntered<Ray> first(ray, component, impl_->simplest, impl_->prepared);
+  impl_->findFirst(first, component, reach.outside, mask);
+  if (!first.any()) {
+    return {};
+  }
+  if (!(first.upper() <= reach.inside) &&
+      !std::visit(
+          [&](const auto& box) {
+            return isEnteredWithin(ray, box, first.solution(), max_range, directionLength(ray));
+          },
+          impl_->simplest[first.box()])) {
+    return {};
+  }
+  return {true, first.box(), first.lower(), first.upper()};
+}
+
 bool Scene::castAny(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
   const DoubleComponent component = doubleComponent(ray);
   const Reach reach = reachOf(component, max_range);

@@ -103,6 +103,11 @@ class SceneCheck {
     expect(!within || (limited.range == unlimited.range && limited.t == unlimited.t),
            "range of cast" + argument, limited.range, unlimited.range);
     expect(scene_.castAny(ray, limit, mask()) == within, "castAny" + argument, !within, within);
+    const ClosestBox closest = scene_.castClosest(ray, limit, mask());
+    expect(closest.hit == within && closest.box == limited.box, "castClosest" + argument,
+           closest.hit, within);
+    expect(closest.t_lower <= limited.t && limited.t <= closest.t_upper,
+           "enclosure of castClosest" + argument, closest.t_lower, limited.t);
   }
 
   static bool isWithin(const oracle::Bound& t, const oracle::ExactComponent& ray, double limit) {

@@ -143,6 +143,24 @@ TEST(SceneCast, ANormalIsThatOfTheLowestAxis) {
   EXPECT_NEAR((hit.normal - Vector3(-1, 0, 0)).norm(), 0.0, 1e-15);
 }
 
+TEST(SceneCastClosest, SaysTheBoxOfCastAndEnclosesItsParameter) {
+  const Scene scene({cubeAt(20), cubeAt(10, 1), turnedCubeAt(10), cubeAt(-10)});
+  const ClosestBox closest = scene.castClosest(kAlongX);
+  const Hit hit = scene.cast(kAlongX);
+  ASSERT_TRUE(closest.hit);
+  EXPECT_EQ(hit.box, closest.box);
+  EXPECT_LE(closest.t_lower, hit.t);
+  EXPECT_GE(closest.t_upper, hit.t);
+  EXPECT_LT(closest.t_upper - closest.t_lower, 1e-12);
+
+  // The farthest range that is allowed is decided exactly: cubeAt(10, 1) is entered at x = 9.
+  EXPECT_TRUE(scene.castClosest(Ray{{0, 0, 0}, {2, 0, 0}}, 9.0).hit);
+  const ClosestBox none = scene.castClosest(Ray{{0, 0, 0}, {2, 0, 0}}, std::nextafter(9.0, 0.0));
+  EXPECT_FALSE(none.hit);
+  EXPECT_EQ(kNoBox, none.box);
+  EXPECT_EQ(kInf, none.t_lower);
+}
+
 TEST(SceneFindAll, SortedByEntryThenIndex) {
   const Scene scene({cubeAt(20), cubeAt(10, 1), cubeAt(-10), turnedCubeAt(10), cubeAt(0, 9)});
   const auto line = scene.findAll(Line{kAlongX.origin, kAlongX.direction});
