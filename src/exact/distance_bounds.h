@@ -18,12 +18,4 @@ constexpr double kLargestScale = 0x1p100;
 constexpr double kSmallestStretch = 0x1p-200;
 constexpr double kLargestStretch = 0x1p200;
 
-/// Distance from a segment to the center of a box, times the largest |.|_1 of centers and ends: see
-/// scene/bounding_spheres.h.
-constexpr double kSphere = 128 * 0x1p-53;
-/// Length of a segment that counts as a point, and more than what underflow takes from a radius.
-constexpr double kSmallestSphere = 0x1p-99;
-/// The radius of a sphere: a difference, three squares, their sum and root, relative.
-constexpr double kSphereRadius = 1.0 + 16 * 0x1p-53;
-
 }  // namespace box_query::exact::bounds

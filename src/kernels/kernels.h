@@ -24,6 +24,10 @@ struct Kernels {
   /// Finds all boxes that may be met.
   void (*all)(const SceneView&, const RayQuery&, Found& found, Take take, void* context);
 
+  /// Offers all boxes that may be within the bound of a segment, near ones first where it can tell.
+  void (*nearest)(const SceneView&, const SegmentQuery&, Approach approach, void* context,
+                  Work& work);
+
   /// Where a component enters and leaves a box, if it is clear which faces it crosses there. Null
   /// where it is faster to work out one face after the other.
   Crossed (*cross)(const CrossingQuery&, Crossing& enter, Crossing& exit);

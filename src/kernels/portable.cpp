@@ -17,9 +17,11 @@ namespace portable {
 #include "kernels/generic/box_times.h"
 #include "kernels/generic/traverse.h"
 #include "kernels/generic/ray_queries.h"
+#include "kernels/generic/nearest.h"
 // clang-format on
 }  // namespace portable
 
-const Kernels kPortable = {"portable", portable::closest, portable::any, portable::all, nullptr};
+const Kernels kPortable = {"portable",    portable::closest, portable::any,
+                           portable::all, portable::nearest, nullptr};
 
 }  // namespace box_query::kernels

@@ -100,6 +100,22 @@ struct Found {
 /// far as the caller knows; of the others: negative to end the query
 using Take = double (*)(void* context, const Found& found);
 
+/// The segment from start to end, and how far away a box may be to matter.
+///
+/// @pre Every number is finite, |start - center| and |end - center| at most kFarthestOrigin.
+struct SegmentQuery {
+  double start[3];
+  double end[3];
+  double bound;
+  bool shrinks;  ///< only the nearest box matters
+  /// Boxes to look at, a bit each by their number in the scene, or null.
+  const std::uint64_t* mask;
+};
+
+/// Takes a box that may be within the bound.
+/// @return the bound from now on, which never grows; negative to end the query
+using Approach = double (*)(void* context, std::uint32_t box);
+
 /// A component and an oriented box.
 ///
 /// @pre All numbers are compact (see bounds::kSmallest), the direction is not zero.

@@ -158,7 +158,7 @@ class TreeBuilder {
     } else {
       std::vector<Range> slots;
       partition({0, n}, roots * kSlots, depth - 2, slots);
-      emit(depth - 1, slots, roots, ranges);
+      emit(depth - 1, slots, (slots.size() + kSlots - 1) / kSlots, ranges);
       for (std::size_t level = depth - 2; level > 0; --level) {
         std::vector<Range> below;
         auto& nodes = tree_.levels_[level];

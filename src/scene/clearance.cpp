@@ -3,7 +3,6 @@
 #include "geometry/distance_query.h"
 #include "geometry/prepared_box.h"
 #include "geometry/solve.h"
-#include "scene/bounding_spheres.h"
 #include "scene/scene_impl.h"
 #include "scene/search.h"
 
@@ -57,6 +56,13 @@ const exact::Ratio& squaredDistance(const Segment& segment, const Box& box, Near
   return *nearby.squared;
 }
 
+/// Exact order, ties by the index.
+bool isNearer(const Segment& segment, const std::vector<Box>& boxes, Nearby& a, Nearby& b) {
+  const int order =
+      compare(squaredDistance(segment, boxes[a.box], a), squaredDistance(segment, boxes[b.box], b));
+  return order < 0 || (order == 0 && a.box < b.box);
+}
+
 /// A box within the radius.
 struct Blocking {
   std::size_t box = kNoBox;
@@ -72,6 +78,17 @@ const exact::Root& firstRoot(const Segment& segment, const Box& box, double radi
     blocking.root = exact::firstWithin(exact::segmentAtBox(segment, box), radius);
   }
   return *blocking.root;
+}
+
+/// Exact order, ties by the index.
+bool isEarlier(const Segment& segment, const std::vector<Box>& boxes, double radius, Blocking& a,
+               Blocking& b) {
+  if (a.bounds.upper == 0.0 && b.bounds.upper == 0.0) {
+    return a.box < b.box;  // both from the start
+  }
+  const int order = compare(firstRoot(segment, boxes[a.box], radius, a),
+                            firstRoot(segment, boxes[b.box], radius, b));
+  return order < 0 || (order == 0 && a.box < b.box);
 }
 
 ParameterBounds firstWithinBounds(const NearestEstimate& estimate, double radius) {
@@ -94,43 +111,37 @@ bool Scene::isClear(const Segment& segment, double radius, const BoxMask* mask) 
     return !impl_->meetsAny(segment, component, 1.0, 1.0, mask,
                             [&](std::size_t i) { return meet(segment, impl_->simplest[i]); });
   }
-  const SphereFilter spheres(segment, impl_->spheres);
   bool clear = true;
-  forEachBox(size(), mask, [&](std::size_t i) {
-    if (!spheres.isBeyond(i, radius)) {
-      const Box& box = impl_->simplest[i];
-      clear = isFartherThan(segment, box, estimateFor(segment, impl_->prepared[i]), radius);
-    }
-    return clear;
+  impl_->forEachNear(segment, radius, false, mask, [&](std::size_t i) {
+    clear = isFartherThan(segment, impl_->simplest[i], estimateFor(segment, impl_->prepared[i]),
+                          radius);
+    return clear ? radius : -1.0;
   });
   return clear;
 }
 
 Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const noexcept {
-  const SphereFilter spheres(segment, impl_->spheres);
   Nearby nearest;
-  forEachBox(size(), mask, [&](std::size_t i) {
-    if (nearest.box != kNoBox && spheres.isBeyond(i, nearest.estimate.bounds.upper)) {
-      return true;
-    }
-    const Box& box = impl_->simplest[i];
-    Nearby other{i, estimateFor(segment, impl_->prepared[i]), std::nullopt};
-    if (other.estimate.bounds.lower <= 0.0 && meet(segment, box)) {
-      nearest = std::move(other);
-      return false;  // nothing is nearer, and a tie would go to this one
-    }
-    const DistanceBounds& a = nearest.estimate.bounds;
-    const DistanceBounds& b = other.estimate.bounds;
-    const bool is_nearer =
-        nearest.box == kNoBox || b.upper < a.lower ||
-        (b.lower <= a.upper &&
-         compare(squaredDistance(segment, box, other),
-                 squaredDistance(segment, impl_->simplest[nearest.box], nearest)) < 0);
-    if (is_nearer) {
-      nearest = std::move(other);
-    }
-    return true;
-  });
+  bool met = false;
+  impl_->forEachNear(
+      segment, std::numeric_limits<double>::infinity(), true, mask, [&](std::size_t i) {
+        const Box& box = impl_->simplest[i];
+        Nearby other{i, estimateFor(segment, impl_->prepared[i]), std::nullopt};
+        if (other.estimate.bounds.lower <= 0.0 && meet(segment, box)) {
+          if (!met || i < nearest.box) {
+            nearest = std::move(other);  // nothing is nearer
+            met = true;
+          }
+          return 0.0;
+        }
+        const DistanceBounds& a = nearest.estimate.bounds;
+        const DistanceBounds& b = other.estimate.bounds;
+        if (nearest.box == kNoBox || b.upper < a.lower ||
+            (!met && b.lower <= a.upper && isNearer(segment, impl_->simplest, other, nearest))) {
+          nearest = std::move(other);
+        }
+        return met ? 0.0 : nearest.estimate.bounds.upper;
+      });
   if (nearest.box == kNoBox) {
     return {};
   }
@@ -158,27 +169,21 @@ Blockage Scene::firstBlockage(const Segment& segment, double radius,
   if (radius == 0.0) {
     return impl_->firstMet(segment, mask);
   }
-  const SphereFilter spheres(segment, impl_->spheres);
   Blocking first;
-  forEachBox(size(), mask, [&](std::size_t i) {
-    if (spheres.isBeyond(i, radius, first.bounds.upper)) {
-      return true;
-    }
+  impl_->forEachNear(segment, radius, false, mask, [&](std::size_t i) {
     const Box& box = impl_->simplest[i];
     Blocking other{i, estimateFor(segment, impl_->prepared[i]), {}, std::nullopt};
     if (isFartherThan(segment, box, other.estimate, radius)) {
-      return true;
+      return radius;
     }
     other.bounds = firstWithinBounds(other.estimate, radius);
-    const bool is_earlier =
-        first.box == kNoBox || other.bounds.upper < first.bounds.lower ||
-        (other.bounds.lower <= first.bounds.upper &&
-         compare(firstRoot(segment, box, radius, other),
-                 firstRoot(segment, impl_->simplest[first.box], radius, first)) < 0);
+    const bool is_earlier = first.box == kNoBox || other.bounds.upper < first.bounds.lower ||
+                            (other.bounds.lower <= first.bounds.upper &&
+                             isEarlier(segment, impl_->simplest, radius, other, first));
     if (is_earlier) {
       first = std::move(other);
     }
-    return first.bounds.upper > 0.0;  // nothing is earlier than the start
+    return radius;
   });
   if (first.box == kNoBox) {
     return {};

@@ -18,7 +18,7 @@ void BoxMask::set(std::size_t box, bool look) noexcept {
   words_[box / 64] = look ? words_[box / 64] | bit : words_[box / 64] & ~bit;
 }
 
-Scene::Impl::Impl(std::vector<Box> all) : boxes(std::move(all)), simplest(boxes), spheres(boxes) {
+Scene::Impl::Impl(std::vector<Box> all) : boxes(std::move(all)), simplest(boxes) {
   prepared.reserve(boxes.size());
   for (Box& box : simplest) {
     if (const auto* oriented = std::get_if<OrientedBox>(&box)) {

@@ -4,7 +4,6 @@
 #include "geometry/aligned_form.h"
 #include "geometry/prepared_box.h"
 #include "kernels/kernels.h"
-#include "scene/bounding_spheres.h"
 #include "scene/box_tree.h"
 #include "scene/prepared_boxes.h"
 
@@ -35,6 +34,13 @@ struct Scene::Impl {
   bool meetsAny(const T& linear, const DoubleComponent& component, double t_inside, double t_end,
                 const BoxMask* mask, Decide&& decide) const;
 
+  /// Calls visit(index) for all boxes that may be within `bound` of the segment. It returns the
+  /// bound from then on, which never grows, or a negative number to end.
+  /// @param shrinks only the nearest box matters
+  template <typename Visit>
+  void forEachNear(const Segment& segment, double bound, bool shrinks, const BoxMask* mask,
+                   Visit&& visit) const;
+
   template <typename T>
   std::vector<BoxIntersection> findAll(const T& linear, const BoxMask* mask) const;
 
@@ -43,7 +49,6 @@ struct Scene::Impl {
   /// The boxes with those oriented ones that are aligned, exactly, in that form: what queries are
   /// solved against. Only faces and normals need the box itself.
   std::vector<Box> simplest;
-  BoundingSpheres spheres;
   BoxTree tree;
   kernels::SceneView view;
   const kernels::Kernels& kernels = kernels::active();

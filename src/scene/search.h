@@ -70,4 +70,44 @@ bool Scene::Impl::meetsAny(const T&, const DoubleComponent& component, double t_
   return undecided.met;
 }
 
+/// Whether the kernels may take a segment.
+inline bool isForKernels(const Segment& segment, const kernels::SceneView& view) {
+  bool near = true;
+  for (int i = 0; i < 3; ++i) {
+    near = near && std::fabs(segment.start[i] - view.center[i]) <= kernels::kFarthestOrigin &&
+           std::fabs(segment.end[i] - view.center[i]) <= kernels::kFarthestOrigin;
+  }
+  return near;
+}
+
+template <typename Visit>
+void Scene::Impl::forEachNear(const Segment& segment, double bound, bool shrinks,
+                              const BoxMask* mask, Visit&& visit) const {
+  const bool for_kernels = isForKernels(segment, view);
+  bool ended = false;
+  if (for_kernels) {
+    const kernels::SegmentQuery query{{segment.start[0], segment.start[1], segment.start[2]},
+                                      {segment.end[0], segment.end[1], segment.end[2]},
+                                      bound,
+                                      shrinks,
+                                      mask != nullptr ? mask->words() : nullptr};
+    struct Context {
+      Visit& visit;
+      bool& ended;
+    } context{visit, ended};
+    const auto approach = [](void* to, std::uint32_t box) {
+      auto& c = *static_cast<Context*>(to);
+      const double next = c.visit(std::size_t{box});
+      c.ended = next < 0.0;
+      return next;
+    };
+    kernels::Work work;
+    kernels.nearest(view, query, approach, &context, work);
+  }
+  if (!ended) {
+    forEachOther(tree, for_kernels, boxes.size(), mask,
+                 [&](std::size_t i) { return visit(i) >= 0.0; });
+  }
+}
+
 }  // namespace box_query

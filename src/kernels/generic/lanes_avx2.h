@@ -23,11 +23,40 @@ static inline Float16 multiplyAdd(Float16 a, Float16 b, Float16 c) {
 static inline Float16 operator*(Float16 a, Float16 b) {
   return {_mm256_mul_ps(a.lo, b.lo), _mm256_mul_ps(a.hi, b.hi)};
 }
+static inline Float16 operator+(Float16 a, Float16 b) {
+  return {_mm256_add_ps(a.lo, b.lo), _mm256_add_ps(a.hi, b.hi)};
+}
+static inline Float16 operator-(Float16 a, Float16 b) {
+  return {_mm256_sub_ps(a.lo, b.lo), _mm256_sub_ps(a.hi, b.hi)};
+}
+static inline Float16 operator/(Float16 a, Float16 b) {
+  return {_mm256_div_ps(a.lo, b.lo), _mm256_div_ps(a.hi, b.hi)};
+}
+static inline Float16 squareRoot(Float16 a) {
+  return {_mm256_sqrt_ps(a.lo), _mm256_sqrt_ps(a.hi)};
+}
+/// a where b is not 0.
+static inline Float16 orZeroWhereZero(Float16 a, Float16 b) {
+  const __m256 zero = _mm256_setzero_ps();
+  return {_mm256_and_ps(_mm256_cmp_ps(b.lo, zero, _CMP_NEQ_OQ), a.lo),
+          _mm256_and_ps(_mm256_cmp_ps(b.hi, zero, _CMP_NEQ_OQ), a.hi)};
+}
+/// (Of a NaN and b, b.)
 static inline Float16 larger(Float16 a, Float16 b) {
   return {_mm256_max_ps(a.lo, b.lo), _mm256_max_ps(a.hi, b.hi)};
 }
 static inline Float16 smaller(Float16 a, Float16 b) {
   return {_mm256_min_ps(a.lo, b.lo), _mm256_min_ps(a.hi, b.hi)};
+}
+/// The smallest lane that is no NaN, or +inf.
+static inline float smallestLane(Float16 a) {
+  alignas(64) float lanes[kSlots];
+  store16(lanes, a);
+  float least = std::numeric_limits<float>::infinity();
+  for (int i = 0; i < kSlots; ++i) {
+    least = lanes[i] < least ? lanes[i] : least;
+  }
+  return least;
 }
 /// A bit for every lane in which a <= b.
 static inline std::uint32_t notAbove(Float16 a, Float16 b) {

@@ -25,11 +25,38 @@ static inline Float16 multiplyAdd(Float16 a, Float16 b, Float16 c) {
 static inline Float16 operator*(Float16 a, Float16 b) {
   return {_mm512_mul_ps(a.v, b.v)};
 }
+static inline Float16 operator+(Float16 a, Float16 b) {
+  return {_mm512_add_ps(a.v, b.v)};
+}
+static inline Float16 operator-(Float16 a, Float16 b) {
+  return {_mm512_sub_ps(a.v, b.v)};
+}
+static inline Float16 operator/(Float16 a, Float16 b) {
+  return {_mm512_div_ps(a.v, b.v)};
+}
+static inline Float16 squareRoot(Float16 a) {
+  return {_mm512_maskz_sqrt_ps(kAllLanes, a.v)};
+}
+/// a where b is not 0.
+static inline Float16 orZeroWhereZero(Float16 a, Float16 b) {
+  return {_mm512_maskz_mov_ps(_mm512_cmp_ps_mask(b.v, _mm512_setzero_ps(), _CMP_NEQ_OQ), a.v)};
+}
+/// (Of a NaN and b, b.)
 static inline Float16 larger(Float16 a, Float16 b) {
   return {_mm512_maskz_max_ps(kAllLanes, a.v, b.v)};
 }
 static inline Float16 smaller(Float16 a, Float16 b) {
   return {_mm512_maskz_min_ps(kAllLanes, a.v, b.v)};
+}
+/// The smallest lane that is no NaN, or +inf.
+static inline float smallestLane(Float16 a) {
+  alignas(64) float lanes[kSlots];
+  store16(lanes, a);
+  float least = std::numeric_limits<float>::infinity();
+  for (int i = 0; i < kSlots; ++i) {
+    least = lanes[i] < least ? lanes[i] : least;
+  }
+  return least;
 }
 /// A bit for every lane in which a <= b.
 static inline std::uint32_t notAbove(Float16 a, Float16 b) {
