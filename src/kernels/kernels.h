@@ -8,21 +8,24 @@
 
 namespace box_query::kernels {
 
+enum class Answer { kNotTaken, kUndecided, kYes };
+
 /// The functions of one instruction set.
 struct Kernels {
   const char* name;
 
   /// Finds all boxes that may be the first that is entered: whatever is not left in `found`, or
   /// was not taken, is certainly not entered before the one of them that is.
-  void (*closest)(const SceneView&, const RayQuery&, Found& found, Take take, void* context);
+  /// @return whether the component is taken
+  bool (*closest)(const SceneView&, const RayQuery&, Found& found, Take take, void* context);
 
-  /// Whether a box is certainly met at a parameter of at most `t_inside`. If not, those that may
-  /// be are left in `found`, or were taken.
-  bool (*any)(const SceneView&, const RayQuery&, double t_inside, Found& found, Take take,
-              void* context);
+  /// Whether a box is certainly met within the range. If that is undecided, the boxes that may be
+  /// are left in `found`, or were taken.
+  Answer (*any)(const SceneView&, const RayQuery&, Found& found, Take take, void* context);
 
   /// Finds all boxes that may be met.
-  void (*all)(const SceneView&, const RayQuery&, Found& found, Take take, void* context);
+  /// @return whether the component is taken
+  bool (*all)(const SceneView&, const RayQuery&, Found& found, Take take, void* context);
 
   /// Offers all boxes that may be within the bound of a segment, near ones first where it can tell.
   void (*nearest)(const SceneView&, const SegmentQuery&, Approach approach, void* context,

@@ -47,25 +47,22 @@ struct SceneView {
   const BoxRecord* records;
   /// Number of the box in the scene.
   const std::uint32_t* box_of_record;
-  double center[3];
+  alignas(32) double center[4];
   /// Around all boxes, relative to the center: [minimum or maximum][axis].
-  float around[2][3];
+  alignas(32) double around[2][4];
   /// How far a ray goes in the mean before it meets a box.
   double mean_free_path;
 };
 
-/// The part of a component that a query is about: origin + t * direction, t in [0, t_end].
+/// The part of a component that a query is about: origin + t * direction, t in [0, 1] or [0, inf).
 ///
-/// @pre Every number is moderate as DoubleComponent has it, |origin - center| <= kFarthestOrigin.
+/// The numbers must be finite. Where they are not moderate, as DoubleComponent has it, or the
+/// origin is farther than kFarthestOrigin from the center of the scene, the kernels do not take it.
 struct RayQuery {
-  double origin[3];
-  double direction[3];
-  double inverse[3];  ///< +inf where the direction is zero
-  bool negative[3];
-  /// The component's own end: 1 of a segment, +inf of a ray.
-  double own_end;
-  /// A box that is certainly entered beyond it is none.
-  double t_end;
+  const double* origin;
+  const double* direction;
+  bool has_end;      ///< t <= 1
+  double max_range;  ///< [m] a box that is certainly entered beyond it is none
   /// Boxes to look at, a bit each by their number in the scene, or null.
   const std::uint64_t* mask;
 };

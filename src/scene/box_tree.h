@@ -43,7 +43,7 @@ class BoxTree {
   std::vector<std::uint32_t> box_of_record_;
   std::vector<std::uint32_t> left_out_;
   double center_[3] = {0.0, 0.0, 0.0};
-  float around_[2][3] = {};
+  double around_[2][3] = {};
   double mean_free_path_ = 0.0;
 };
 

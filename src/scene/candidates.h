@@ -15,30 +15,18 @@
 
 namespace box_query {
 
-/// Whether the kernels may take a component.
-inline bool isForKernels(const DoubleComponent& component, const kernels::SceneView& view) {
-  bool near = component.moderate;
-  for (int i = 0; i < 3; ++i) {
-    near = near && std::fabs(component.origin[i] - view.center[i]) <= kernels::kFarthestOrigin;
-  }
-  return near;
+/// What a kernel is asked about a ray or a segment; `direction` holds that of a segment.
+inline kernels::RayQuery rayQuery(const Ray& ray, double max_range, const BoxMask* mask,
+                                  Vector3& /*direction*/) {
+  return {ray.origin.data(), ray.direction.data(), false, max_range,
+          mask != nullptr ? mask->words() : nullptr};
 }
-
-/// @param t_end boxes that are certainly entered beyond it are none
-template <typename T>
-kernels::RayQuery rayQuery(const DoubleComponent& component, double t_end, const BoxMask* mask) {
-  static_assert(kHasStart<T>, "a line is two rays");
-  kernels::RayQuery query;
-  for (int i = 0; i < 3; ++i) {
-    query.origin[i] = component.origin[i];
-    query.direction[i] = component.direction[i];
-    query.inverse[i] = component.inverse[i];
-    query.negative[i] = component.negative[i];
-  }
-  query.own_end = kHasEnd<T> ? 1.0 : std::numeric_limits<double>::infinity();
-  query.t_end = std::min(t_end, query.own_end);
-  query.mask = mask != nullptr ? mask->words() : nullptr;
-  return query;
+inline kernels::RayQuery rayQuery(const Segment& segment, double max_range, const BoxMask* mask,
+                                  Vector3& direction) {
+  // Where the end is not moderate, its difference need not tell: no direction is not taken.
+  direction = isModerate(segment.end) ? Vector3(segment.end - segment.start) : Vector3::Zero();
+  return {segment.start.data(), direction.data(), true, max_range,
+          mask != nullptr ? mask->words() : nullptr};
 }
 
 /// Calls visit(candidate) for each box in `found` once, in order of their numbers, until it returns

@@ -13,23 +13,6 @@ namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-/// A range in metres as bounds of the parameter: up to `inside` certainly within, beyond `outside`
-/// certainly not.
-struct Reach {
-  double inside;
-  double outside;
-};
-
-Reach reachOf(const DoubleComponent& c, double max_range) {
-  if (!c.moderate || max_range == kInf) {
-    return {c.moderate ? kInf : -kInf, kInf};
-  }
-  const double* d = c.direction;
-  const double t = max_range / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-  return {t / exact::bounds::kInflate - exact::bounds::kUnderflow,
-          t * exact::bounds::kInflate + exact::bounds::kUnderflow};
-}
-
 /// Outward normal of the face of the lowest axis in the set.
 Vector3 outwardNormal(FaceSet faces, const Box& box, bool is_aligned) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -82,27 +65,23 @@ Hit hitOf(const Ray& ray, const DoubleComponent& component, std::size_t index, c
 }  // namespace
 
 Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
-  const DoubleComponent component = doubleComponent(ray);
-  const Reach reach = reachOf(component, max_range);
-  FirstEntered<Ray> first(ray, component, impl_->simplest, impl_->prepared);
-  impl_->findFirst(first, component, reach.outside, mask);
+  FirstEntered<Ray> first(ray, impl_->simplest, impl_->prepared);
+  impl_->findFirst(first, max_range, mask);
   if (!first.any()) {
     return {};
   }
-  return hitOf(ray, component, first.box(), impl_->boxes[first.box()], impl_->simplest[first.box()],
-               first.solution(), max_range);
+  return hitOf(ray, first.component(), first.box(), impl_->boxes[first.box()],
+               impl_->simplest[first.box()], first.solution(), max_range);
 }
 
 ClosestBox Scene::castClosest(const Ray& ray, double max_range,
                               const BoxMask* mask) const noexcept {
-  const DoubleComponent component = doubleComponent(ray);
-  const Reach reach = reachOf(component, max_range);
-  FirstEntered<Ray> first(ray, component, impl_->simplest, impl_->prepared);
-  impl_->findFirst(first, component, reach.outside, mask);
+  FirstEntered<Ray> first(ray, impl_->simplest, impl_->prepared);
+  impl_->findFirst(first, max_range, mask);
   if (!first.any()) {
     return {};
   }
-  if (!(first.upper() <= reach.inside) &&
+  if (max_range < kInf && !(first.upper() <= reachOf(first.component(), max_range).inside) &&
       !std::visit(
           [&](const auto& box) {
             return isEnteredWithin(ray, box, first.solution(), max_range, directionLength(ray));
@@ -114,15 +93,13 @@ ClosestBox Scene::castClosest(const Ray& ray, double max_range,
 }
 
 bool Scene::castAny(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
-  const DoubleComponent component = doubleComponent(ray);
-  const Reach reach = reachOf(component, max_range);
-  const exact::DoubleDouble length =
-      max_range < kInf ? directionLength(ray) : exact::DoubleDouble();
-  return impl_->meetsAny(ray, component, reach.inside, reach.outside, mask, [&](std::size_t i) {
-    Solution solution = solveBox(ray, component, impl_->simplest[i], impl_->prepared[i]);
+  return impl_->meetsAny(ray, max_range, mask, [&](std::size_t i) {
+    Solution solution = solveBox(ray, doubleComponent(ray), impl_->simplest[i], impl_->prepared[i]);
     return solution.num_points > 0 &&
            std::visit(
-               [&](const auto& b) { return isEnteredWithin(ray, b, solution, max_range, length); },
+               [&](const auto& box) {
+                 return isEnteredWithin(ray, box, solution, max_range, directionLength(ray));
+               },
                impl_->simplest[i]);
   });
 }

@@ -106,9 +106,8 @@ ParameterBounds firstWithinBounds(const NearestEstimate& estimate, double radius
 }  // namespace
 
 bool Scene::isClear(const Segment& segment, double radius, const BoxMask* mask) const noexcept {
-  if (radius == 0.0) {
-    const DoubleComponent component = doubleComponent(segment);
-    return !impl_->meetsAny(segment, component, 1.0, 1.0, mask,
+  if (radius == 0.0 && segment.start != segment.end) {
+    return !impl_->meetsAny(segment, std::numeric_limits<double>::infinity(), mask,
                             [&](std::size_t i) { return meet(segment, impl_->simplest[i]); });
   }
   bool clear = true;
@@ -152,9 +151,8 @@ Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const no
 }
 
 Blockage Scene::Impl::firstMet(const Segment& segment, const BoxMask* mask) const {
-  const DoubleComponent component = doubleComponent(segment);
-  FirstEntered<Segment> first(segment, component, simplest, prepared);
-  findFirst(first, component, 1.0, mask);
+  FirstEntered<Segment> first(segment, simplest, prepared);
+  findFirst(first, std::numeric_limits<double>::infinity(), mask);
   if (!first.any()) {
     return {};
   }

@@ -39,23 +39,23 @@ std::vector<BoxIntersection> Scene::Impl::findAll(const T& linear, const BoxMask
   constexpr double kInf = std::numeric_limits<double>::infinity();
   const DoubleComponent component = doubleComponent(linear);
   Indices maybe;
-  const auto addAlong = [&](const kernels::RayQuery& query) {
+  const auto addAlong = [&](const auto& ray) {
     kernels::Found found;
-    kernels.all(view, query, found, addTo, &maybe);
+    Vector3 direction;
+    const bool taken =
+        kernels.all(view, rayQuery(ray, kInf, mask, direction), found, addTo, &maybe);
     addTo(&maybe, found);
+    return taken;
   };
-  const bool for_kernels = isForKernels(component, view);
-  if (for_kernels) {
-    if constexpr (kHasStart<T>) {
-      addAlong(rayQuery<T>(component, kInf, mask));
-    } else {
-      // A line is two rays.
-      addAlong(rayQuery<Ray>(component, kInf, mask));
-      const DoubleComponent back = doubleComponent(Line{linear.origin, -linear.direction});
-      addAlong(rayQuery<Ray>(back, kInf, mask));
-    }
+  bool taken = false;
+  if constexpr (kHasStart<T>) {
+    taken = addAlong(linear);
+  } else {
+    // A line is two rays.
+    taken = addAlong(Ray{linear.origin, linear.direction}) &&
+            addAlong(Ray{linear.origin, -linear.direction});
   }
-  forEachOther(tree, for_kernels, boxes.size(), mask, [&](std::size_t i) {
+  forEachOther(tree, taken, boxes.size(), mask, [&](std::size_t i) {
     if (!enclose<T>(component, prepared[i]).isMiss()) {
       maybe.push_back(static_cast<std::uint32_t>(i));
     }

@@ -31,9 +31,18 @@ Solution solveBox(const T& linear, const DoubleComponent& component, const Box& 
 template <typename T>
 class FirstEntered {
  public:
-  FirstEntered(const T& linear, const DoubleComponent& component, const std::vector<Box>& boxes,
+  FirstEntered(const T& linear, const std::vector<Box>& boxes,
                const std::vector<PreparedBox>& prepared)
-      : linear_(linear), component_(component), boxes_(boxes), prepared_(prepared) {}
+      : linear_(linear), boxes_(boxes), prepared_(prepared) {}
+
+  const T& linear() const { return linear_; }
+  /// In double, for whoever needs it.
+  const DoubleComponent& component() {
+    if (!component_) {
+      component_ = doubleComponent(linear_);
+    }
+    return *component_;
+  }
 
   bool any() const { return best_.box != kNoBox; }
   std::size_t box() const { return best_.box; }
@@ -51,7 +60,7 @@ class FirstEntered {
     }
     if (c.certain) {
       take({c.box, c.enter_lo, c.enter_hi, std::nullopt});
-    } else if (crossesThinSlab<T>(component_, prepared_[c.box])) {
+    } else if (crossesThinSlab<T>(component(), prepared_[c.box])) {
       take({c.box, c.enter_lo, c.exit_hi, std::nullopt});
     } else {
       Entry entry{c.box, c.enter_lo, c.exit_hi, std::nullopt};
@@ -62,7 +71,7 @@ class FirstEntered {
   }
   /// @param t_end a box that is certainly entered beyond it is none
   void offer(std::size_t index, double t_end) {
-    const kernels::Candidate c = candidateOf<T>(component_, prepared_[index], index);
+    const kernels::Candidate c = candidateOf<T>(component(), prepared_[index], index);
     if (c.enter_lo <= c.exit_hi && c.enter_lo <= t_end) {
       offer(c);
     }
@@ -125,15 +134,15 @@ class FirstEntered {
 
   Solution& solutionOf(Entry& e) {
     if (!e.solution) {
-      e.solution = solveBox(linear_, component_, boxes_[e.box], prepared_[e.box]);
+      e.solution = solveBox(linear_, component(), boxes_[e.box], prepared_[e.box]);
     }
     return *e.solution;
   }
 
   const T& linear_;
-  const DoubleComponent& component_;
   const std::vector<Box>& boxes_;
   const std::vector<PreparedBox>& prepared_;
+  std::optional<DoubleComponent> component_;
   Entry best_;
 };
 

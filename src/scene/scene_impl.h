@@ -22,17 +22,15 @@ struct Scene::Impl {
   /// firstBlockage() for radius 0.
   Blockage firstMet(const Segment& segment, const BoxMask* mask) const;
 
-  /// Offers all boxes that may be the first, entered at a parameter of at most `t_end`.
+  /// Offers all boxes that may be the first, but for those that are certainly entered beyond
+  /// `max_range` metres.
   template <typename T>
-  void findFirst(FirstEntered<T>& first, const DoubleComponent& component, double t_end,
-                 const BoxMask* mask) const;
+  void findFirst(FirstEntered<T>& first, double max_range, const BoxMask* mask) const;
 
-  /// Whether any box is met, entered at a parameter that is certainly allowed up to `t_inside`, and
-  /// certainly not beyond `t_end`.
+  /// Whether any box is met, entered at a range of at most `max_range` metres.
   /// @param decide decide(index) says so exactly, where doubles cannot
   template <typename T, typename Decide>
-  bool meetsAny(const T& linear, const DoubleComponent& component, double t_inside, double t_end,
-                const BoxMask* mask, Decide&& decide) const;
+  bool meetsAny(const T& linear, double max_range, const BoxMask* mask, Decide&& decide) const;
 
   /// Calls visit(index) for all boxes that may be within `bound` of the segment. It returns the
   /// bound from then on, which never grows, or a negative number to end.

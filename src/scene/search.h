@@ -9,60 +9,76 @@
 
 namespace box_query {
 
-template <typename T>
-void Scene::Impl::findFirst(FirstEntered<T>& first, const DoubleComponent& component, double t_end,
-                            const BoxMask* mask) const {
-  const bool for_kernels = isForKernels(component, view);
-  if (for_kernels) {
-    kernels::Found found;
-    kernels.closest(view, rayQuery<T>(component, t_end, mask), found, FirstEntered<T>::take,
-                    &first);
-    first.offer(found);
+/// A range in metres as bounds of the parameter: up to `inside` certainly within, beyond `outside`
+/// certainly not.
+struct Reach {
+  double inside;
+  double outside;
+};
+
+inline Reach reachOf(const DoubleComponent& c, double max_range) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  if (!c.moderate || max_range == kInf) {
+    return {c.moderate ? kInf : -kInf, kInf};
   }
-  forEachOther(tree, for_kernels, boxes.size(), mask, [&](std::size_t i) {
-    first.offer(i, t_end);
-    return true;
-  });
+  const double* d = c.direction;
+  const double t = max_range / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  return {t / exact::bounds::kInflate - exact::bounds::kUnderflow,
+          t * exact::bounds::kInflate + exact::bounds::kUnderflow};
+}
+
+template <typename T>
+void Scene::Impl::findFirst(FirstEntered<T>& first, double max_range, const BoxMask* mask) const {
+  kernels::Found found;
+  Vector3 direction;
+  const bool taken = kernels.closest(view, rayQuery(first.linear(), max_range, mask, direction),
+                                     found, FirstEntered<T>::take, &first);
+  first.offer(found);
+  if (!taken || !tree.left_out().empty()) {
+    const double t_end = reachOf(first.component(), max_range).outside;
+    forEachOther(tree, taken, boxes.size(), mask, [&](std::size_t i) {
+      first.offer(i, t_end);
+      return true;
+    });
+  }
 }
 
 template <typename T, typename Decide>
-bool Scene::Impl::meetsAny(const T&, const DoubleComponent& component, double t_inside,
-                           double t_end, const BoxMask* mask, Decide&& decide) const {
+bool Scene::Impl::meetsAny(const T& linear, double max_range, const BoxMask* mask,
+                           Decide&& decide) const {
   struct Undecided {
-    const Impl& scene;
-    const DoubleComponent& component;
-    double t_inside;
     Decide& decide;
     bool met = false;
 
-    bool isMet(const kernels::Candidate& c) {
-      return (c.exit_hi <= t_inside && crossesThinSlab<T>(component, scene.prepared[c.box])) ||
-             decide(c.box);
-    }
     static double take(void* context, const kernels::Found& found) {
       auto& self = *static_cast<Undecided*>(context);
       self.met = self.met || !forEachCandidate(found, [&](const kernels::Candidate& c) {
-                   return !self.isMet(c);
+                   return !self.decide(c.box);
                  });
       return self.met ? -1.0 : 1.0;
     }
   };
-  Undecided undecided{*this, component, t_inside, decide};
-  const bool for_kernels = isForKernels(component, view);
-  if (for_kernels) {
-    kernels::Found found;
-    if (kernels.any(view, rayQuery<T>(component, t_end, mask), t_inside, found, Undecided::take,
-                    &undecided) ||
-        undecided.met || Undecided::take(&undecided, found) < 0.0) {
-      return true;
-    }
+  Undecided undecided{decide};
+  kernels::Found found;
+  Vector3 direction;
+  const kernels::Answer answer = kernels.any(view, rayQuery(linear, max_range, mask, direction),
+                                             found, Undecided::take, &undecided);
+  if (answer == kernels::Answer::kYes || undecided.met ||
+      Undecided::take(&undecided, found) < 0.0) {
+    return true;
+  }
+  const bool taken = answer != kernels::Answer::kNotTaken;
+  if (taken && tree.left_out().empty()) {
+    return false;
   }
   // Those that doubles decide come first: nothing else may be needed.
+  const DoubleComponent component = doubleComponent(linear);
+  const Reach reach = reachOf(component, max_range);
   for (const bool slowly : {false, true}) {
-    forEachOther(tree, for_kernels, boxes.size(), mask, [&](std::size_t i) {
+    forEachOther(tree, taken, boxes.size(), mask, [&](std::size_t i) {
       const kernels::Candidate c = candidateOf<T>(component, prepared[i], i);
-      if (c.enter_lo <= c.exit_hi && c.enter_lo <= t_end) {
-        undecided.met = slowly ? undecided.isMet(c) : c.certain && c.enter_hi <= t_inside;
+      if (c.enter_lo <= c.exit_hi && c.enter_lo <= reach.outside) {
+        undecided.met = slowly ? decide(i) : c.certain && c.enter_hi <= reach.inside;
       }
       return !undecided.met;
     });

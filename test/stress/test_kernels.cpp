@@ -43,9 +43,19 @@ class Asked {
     }
   }
 
+  /// That the kernel takes just what it should.
   template <typename T>
   bool takes(const T& linear) const {
-    return isForKernels(doubleComponent(linear), view_);
+    const DoubleComponent c = doubleComponent(linear);
+    bool near = c.moderate;
+    for (int i = 0; i < 3; ++i) {
+      near = near && std::fabs(c.origin[i] - view_.center[i]) <= kernels::kFarthestOrigin;
+    }
+    kernels::Found found;
+    Vector3 direction;
+    EXPECT_EQ(near, kernels_.all(view_, rayQuery(linear, kInf, nullptr, direction), found, addTo,
+                                 nullptr));
+    return near;
   }
   bool isInTree(std::size_t box) const { return in_tree_[box]; }
 
@@ -53,7 +63,8 @@ class Asked {
   std::set<std::size_t> all(const T& linear, const BoxMask* mask = nullptr) const {
     std::set<std::size_t> boxes;
     kernels::Found found;
-    kernels_.all(view_, rayQuery<T>(doubleComponent(linear), kInf, mask), found, addTo, &boxes);
+    Vector3 direction;
+    kernels_.all(view_, rayQuery(linear, kInf, mask, direction), found, addTo, &boxes);
     addTo(&boxes, found);
     return boxes;
   }
@@ -63,8 +74,8 @@ class Asked {
   std::set<std::size_t> closest(const T& linear) const {
     std::set<std::size_t> boxes;
     kernels::Found found;
-    kernels_.closest(view_, rayQuery<T>(doubleComponent(linear), kInf, nullptr), found, addTo,
-                     &boxes);
+    Vector3 direction;
+    kernels_.closest(view_, rayQuery(linear, kInf, nullptr, direction), found, addTo, &boxes);
     addTo(&boxes, found);
     return boxes;
   }
@@ -72,14 +83,18 @@ class Asked {
   template <typename T>
   bool any(const T& linear, std::set<std::size_t>& undecided) const {
     kernels::Found found;
-    const bool met = kernels_.any(view_, rayQuery<T>(doubleComponent(linear), kInf, nullptr), kInf,
-                                  found, addTo, &undecided);
+    Vector3 direction;
+    const kernels::Answer answer =
+        kernels_.any(view_, rayQuery(linear, kInf, nullptr, direction), found, addTo, &undecided);
     addTo(&undecided, found);
-    return met;
+    return answer == kernels::Answer::kYes;
   }
 
  private:
   static double addTo(void* context, const kernels::Found& found) {
+    if (context == nullptr) {
+      return kInf;
+    }
     for (int i = 0; i < found.count; ++i) {
       static_cast<std::set<std::size_t>*>(context)->insert(found.candidates[i].box);
     }

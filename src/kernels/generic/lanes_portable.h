@@ -57,10 +57,6 @@ static inline Double4 orIfNan(const Double4& a, double other) {
 static inline Double4 choose(const Double4& a, const Double4& b, const Double4& negative) {
   return each4([&](int i) { return std::signbit(negative.v[i]) ? b.v[i] : a.v[i]; });
 }
-static inline Double4 signs4(bool x, bool y, bool z) {
-  return {{x ? -0.0 : 0.0, y ? -0.0 : 0.0, z ? -0.0 : 0.0, 0.0}};
-}
-
 struct Pair {
   double first;
   double second;
@@ -81,6 +77,43 @@ static inline Pair smallest3(const Double4& a, const Double4& b) {
 }
 static inline void prefetch(const void* p) {
   __builtin_prefetch(p);
+}
+static inline Double4 negated(const Double4& a) {
+  return each4([&](int i) { return -a.v[i]; });
+}
+/// a times -1 where b is negative.
+static inline Double4 withSignOf(const Double4& a, const Double4& b) {
+  return each4([&](int i) { return std::signbit(b.v[i]) ? -a.v[i] : a.v[i]; });
+}
+static inline Double4 larger(const Double4& a, const Double4& b) {
+  return each4([&](int i) { return largerOf(a.v[i], b.v[i]); });
+}
+static inline double firstLane(const Double4& a) {
+  return a.v[0];
+}
+static inline void storeAsFloats(float* p, const Double4& a) {
+  for (int i = 0; i < 4; ++i) {
+    p[i] = static_cast<float>(a.v[i]);
+  }
+}
+/// Lanes whose sign is set where a >= b.
+static inline Double4 isNotBelow(const Double4& a, const Double4& b) {
+  return each4([&](int i) { return a.v[i] >= b.v[i] ? -1.0 : 1.0; });
+}
+/// (y, z, x) of (x, y, z), and (z, x, y).
+static inline Double4 turned(const Double4& a) {
+  return {{a.v[1], a.v[2], a.v[0], a.v[3]}};
+}
+static inline Double4 turnedTwice(const Double4& a) {
+  return {{a.v[2], a.v[0], a.v[1], a.v[3]}};
+}
+/// A bit for each of the first three lanes in which a >= b, and in which the sign is set.
+static inline unsigned notBelow3(const Double4& a, const Double4& b) {
+  return (a.v[0] >= b.v[0] ? 1U : 0U) | (a.v[1] >= b.v[1] ? 2U : 0U) | (a.v[2] >= b.v[2] ? 4U : 0U);
+}
+static inline unsigned signs3(const Double4& a) {
+  return (std::signbit(a.v[0]) ? 1U : 0U) | (std::signbit(a.v[1]) ? 2U : 0U) |
+         (std::signbit(a.v[2]) ? 4U : 0U);
 }
 static inline int lowestBit(std::uint32_t bits) {
   return __builtin_ctz(bits);

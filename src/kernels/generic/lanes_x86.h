@@ -53,10 +53,6 @@ static inline Double4 orIfNan(Double4 a, double other) {
 static inline Double4 choose(Double4 a, Double4 b, Double4 negative) {
   return {_mm256_blendv_pd(a.v, b.v, negative.v)};
 }
-static inline Double4 signs4(bool x, bool y, bool z) {
-  return {_mm256_setr_pd(x ? -0.0 : 0.0, y ? -0.0 : 0.0, z ? -0.0 : 0.0, 0.0)};
-}
-
 struct Pair {
   double first;
   double second;
@@ -93,6 +89,15 @@ static inline Double4 sumOf3(Double4 a) {
   return {_mm256_add_pd(_mm256_add_pd(_mm256_permute4x64_pd(a.v, _MM_SHUFFLE(0, 0, 0, 0)),
                                       _mm256_permute4x64_pd(a.v, _MM_SHUFFLE(1, 1, 1, 1))),
                         _mm256_permute4x64_pd(a.v, _MM_SHUFFLE(2, 2, 2, 2)))};
+}
+static inline Double4 larger(Double4 a, Double4 b) {
+  return {_mm256_max_pd(a.v, b.v)};
+}
+static inline double firstLane(Double4 a) {
+  return _mm256_cvtsd_f64(a.v);
+}
+static inline void storeAsFloats(float* p, Double4 a) {
+  _mm_store_ps(p, _mm256_cvtpd_ps(a.v));
 }
 /// Lanes whose sign is set where a >= b.
 static inline Double4 isNotBelow(Double4 a, Double4 b) {

@@ -12,6 +12,8 @@
 // less than s_end / |r_i|: its planes are moved apart by twice s_end (where the ray is between
 // them, or reaches one, they clip nothing before s_end).
 
+enum class Outcome { kNotTaken, kMiss, kReady };
+
 constexpr double kShiftError = 0x1p-20;
 constexpr float kFarther = 1.0F + 0x1p-20F;
 /// The same for numbers that are rounded up by it.
@@ -41,48 +43,92 @@ struct FloatRay {
   float roundedUp(double t) const { return static_cast<float>(t * scale * kUp + kFloatUnderflow); }
 };
 
-/// Prepares a ray for the bounds of a scene.
-/// @return false if it certainly meets none of them up to query.t_end
-static inline bool prepare(const SceneView& view, const RayQuery& query, FloatRay& ray) {
-  double origin[3];
-  double inverse[3];
-  bool flat[3];
-  const double size[3] = {std::fabs(query.direction[0]), std::fabs(query.direction[1]),
-                          std::fabs(query.direction[2])};
-  const double larger_of_two = size[0] > size[1] ? size[0] : size[1];
-  ray.scale = larger_of_two > size[2] ? larger_of_two : size[2];
-  double begin = 0.0;
-  double end = query.t_end * ray.scale * kUp;
-  for (int i = 0; i < 3; ++i) {
-    origin[i] = query.origin[i] - view.center[i];
-    flat[i] = size[i] * kSteepest < ray.scale;
-    inverse[i] =
-        flat[i] ? (query.negative[i] ? -kSteepest : kSteepest) : ray.scale / query.direction[i];
-    ray.near_side[i] = query.negative[i] ? 1 : 0;
-    if (!flat[i]) {
-      const double near = (view.around[ray.near_side[i]][i] - origin[i]) * inverse[i];
-      const double far = (view.around[1 - ray.near_side[i]][i] - origin[i]) * inverse[i];
-      const double shift_error = kShiftError * std::fabs(origin[i] * inverse[i]) + kFloatUnderflow;
-      const double nearest = near - kShiftError * std::fabs(near) - shift_error;
-      const double farthest = far + kShiftError * std::fabs(far) + shift_error;
-      begin = begin > nearest ? begin : nearest;
-      end = end < farthest ? end : farthest;
-    }
+/// A ray as the boxes of a scene are compared with it.
+struct Ray {
+  FloatRay in_float;
+  const double* origin;
+  const double* direction;
+  Double4 inverse;  ///< of the direction, infinite where that is 0
+  Double4 signs;    ///< of the direction
+  double own_end;   ///< of the component: 1 of a segment, +inf of a ray
+  double t_end;     ///< a box that is certainly entered beyond it is none
+  double t_inside;  ///< a box that is certainly entered before it is certainly in range
+};
+
+/// Whether the three numbers are 0 or of a size between the two.
+static inline bool areBetween(Double4 size, double least, double most) {
+  return (notBelow3(all4(most), size) &
+          (notBelow3(size, all4(least)) | notBelow3(all4(0.0), size))) == 7U;
+}
+
+/// Prepares a ray for the boxes of a scene.
+static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray& ray) {
+  namespace bounds = exact::bounds;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Double4 origin = lanes4(query.origin);
+  const Double4 direction = lanes4(query.direction);
+  const Double4 size = magnitude(direction);
+  const Double4 relative = origin - load4(view.center);
+  const Double4 scale = larger(larger(size, turned(size)), turnedTwice(size));
+  FloatRay& f = ray.in_float;
+  f.scale = firstLane(scale);
+  if (!(areBetween(magnitude(origin), bounds::kTiniest, bounds::kLargest) &&
+        areBetween(size, bounds::kSmallestComponent, bounds::kLargest) &&
+        f.scale >= bounds::kSmallestDirection &&
+        notBelow3(all4(kFarthestOrigin), magnitude(relative)) == 7U)) {
+    return Outcome::kNotTaken;
   }
+  ray.origin = query.origin;
+  ray.direction = query.direction;
+  ray.inverse = all4(1.0) / direction;
+  ray.signs = direction;
+  ray.own_end = query.has_end ? 1.0 : kInfinity;
+  ray.t_end = ray.own_end;
+  ray.t_inside = ray.own_end;
+  if (query.max_range < kInfinity) {
+    const double* d = query.direction;
+    const double t = query.max_range / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    ray.t_end = t * bounds::kInflate + bounds::kUnderflow;
+    ray.t_inside = t / bounds::kInflate - bounds::kUnderflow;
+  }
+
+  const Double4 is_flat = isNotBelow(scale, all4(kSteepest) * size);
+  const Double4 inverse =
+      choose(scale / direction, withSignOf(all4(kSteepest), direction), is_flat);
+  const Double4 lo = load4(view.around[0]);
+  const Double4 hi = load4(view.around[1]);
+  const Double4 near = (choose(lo, hi, direction) - relative) * inverse;
+  const Double4 far = (choose(hi, lo, direction) - relative) * inverse;
+  const Double4 shift = relative * inverse;
+  const Double4 error =
+      fused(magnitude(shift), all4(kShiftError), all4(kFloatUnderflow) * magnitude(inverse));
+  const Double4 nearest = (near - error) - all4(kShiftError) * magnitude(near);
+  const Double4 farthest = (far + error) + all4(kShiftError) * magnitude(far);
+  const double first = largest3(choose(nearest, all4(-kInfinity), is_flat), nearest).first;
+  const double last = smallest3(choose(farthest, all4(kInfinity), is_flat), farthest).first;
+  const double begin = first > 0.0 ? first : 0.0;
+  const double own = ray.t_end * f.scale * kUp;
+  const double end = last < own ? last : own;
   if (begin > end) {
-    return false;
+    return Outcome::kMiss;
   }
+  const Double4 apart = error + choose(all4(0.0), all4(2.1 * end), is_flat);
+  alignas(16) float inverses[4];
+  alignas(16) float near_shifts[4];
+  alignas(16) float far_shifts[4];
+  storeAsFloats(inverses, inverse);
+  storeAsFloats(near_shifts, negated(shift) - apart);
+  storeAsFloats(far_shifts, apart - shift);
+  const unsigned goes_down = signs3(direction);
   for (int i = 0; i < 3; ++i) {
-    const double shift = -(origin[i] * inverse[i]);
-    const double error = kShiftError * std::fabs(shift) + kFloatUnderflow * std::fabs(inverse[i]) +
-                         (flat[i] ? 2.1 * end : 0.0);
-    ray.inverse[i] = all16(static_cast<float>(inverse[i]));
-    ray.near_shift[i] = all16(static_cast<float>(shift - error));
-    ray.far_shift[i] = all16(static_cast<float>(shift + error));
+    f.near_side[i] = static_cast<int>((goes_down >> i) & 1U);
+    f.inverse[i] = all16(inverses[i]);
+    f.near_shift[i] = all16(near_shifts[i]);
+    f.far_shift[i] = all16(far_shifts[i]);
   }
-  ray.setRange(static_cast<float>(begin * (1.0 - kShiftError)),
-               static_cast<float>(end * kUp + kFloatUnderflow));
-  return true;
+  f.setRange(static_cast<float>(begin * (1.0 - kShiftError)),
+             static_cast<float>(end * kUp + kFloatUnderflow));
+  return Outcome::kReady;
 }
 
 /// The slots whose bounds the ray may meet between its begin and its end, a bit each.

@@ -8,7 +8,7 @@ static inline bool isLookedAt(const RayQuery& query, std::uint32_t box) {
 struct ClosestVisit {
   const SceneView& view;
   const RayQuery& query;
-  FloatRay& ray;
+  Ray& ray;
   Found& found;
   Take take;
   void* context;
@@ -24,7 +24,7 @@ struct ClosestVisit {
       return true;
     }
     ++found.work.boxes;
-    const Times t = timesOf(view.records[record], query);
+    const Times t = timesOf(view.records[record], ray);
     if (t.enter_lo > t.exit_hi || t.enter_lo > bound) {
       return true;
     }
@@ -46,10 +46,11 @@ struct ClosestVisit {
 
   void shorten(double t) {
     bound = t;
-    bound_s = ray.roundedUp(t);
-    if (bound_s < ray.end_s) {
-      ray.end_s = bound_s;
-      ray.end = all16(bound_s);
+    FloatRay& f = ray.in_float;
+    bound_s = f.roundedUp(t);
+    if (bound_s < f.end_s) {
+      f.end_s = bound_s;
+      f.end = all16(bound_s);
     }
   }
 
@@ -76,19 +77,33 @@ struct ClosestVisit {
   }
 };
 
-static void closest(const SceneView& view, const RayQuery& query, Found& found, Take take,
-                    void* context) {
+/// Prepares a query.
+/// @return kReady if there is anything to search
+static inline Outcome begin(const SceneView& view, const RayQuery& query, Found& found, Ray& ray) {
   found.count = 0;
   found.work = Work();
-  FloatRay ray;
-  if (view.depth == 0 || !prepare(view, query, ray)) {
-    return;
+  const Outcome outcome = prepare(view, query, ray);
+  return outcome == Outcome::kReady && view.depth == 0 ? Outcome::kMiss : outcome;
+}
+
+static bool closest(const SceneView& view, const RayQuery& query, Found& found, Take take,
+                    void* context) {
+  Ray ray;
+  const Outcome outcome = begin(view, query, found, ray);
+  if (outcome == Outcome::kReady) {
+    ClosestVisit visit{view,
+                       query,
+                       ray,
+                       found,
+                       take,
+                       context,
+                       ray.t_end,
+                       ray.in_float.end_s,
+                       std::numeric_limits<double>::infinity()};
+    descendInStretches(view, ray.in_float, found.work, visit);
+    visit.dropLater();
   }
-  ClosestVisit visit{view,        query,     ray,
-                     found,       take,      context,
-                     query.t_end, ray.end_s, std::numeric_limits<double>::infinity()};
-  descendInStretches(view, ray, found.work, visit);
-  visit.dropLater();
+  return outcome != Outcome::kNotTaken;
 }
 
 /// Adds a candidate to those that the caller decides.
@@ -109,10 +124,10 @@ static inline bool leaveToCaller(Found& found, const Candidate& candidate, Take 
 struct AnyVisit {
   const SceneView& view;
   const RayQuery& query;
+  const Ray& ray;
   Found& found;
   Take take;
   void* context;
-  double t_inside;
   float end_s;
   bool is_met;
 
@@ -124,12 +139,12 @@ struct AnyVisit {
       return true;
     }
     ++found.work.boxes;
-    const Times t = timesOf(view.records[record], query);
-    if (t.enter_lo > t.exit_hi || t.enter_lo > query.t_end) {
+    const Times t = timesOf(view.records[record], ray);
+    if (t.enter_lo > t.exit_hi || t.enter_lo > ray.t_end) {
       return true;
     }
     const bool certain = t.enter_hi <= t.exit_lo;
-    if (certain && t.enter_hi <= t_inside) {
+    if (certain && t.enter_hi <= ray.t_inside) {
       is_met = true;
       return false;
     }
@@ -137,22 +152,22 @@ struct AnyVisit {
   }
 };
 
-static bool any(const SceneView& view, const RayQuery& query, double t_inside, Found& found,
-                Take take, void* context) {
-  found.count = 0;
-  found.work = Work();
-  FloatRay ray;
-  if (view.depth == 0 || !prepare(view, query, ray)) {
-    return false;
+static Answer any(const SceneView& view, const RayQuery& query, Found& found, Take take,
+                  void* context) {
+  Ray ray;
+  const Outcome outcome = begin(view, query, found, ray);
+  if (outcome != Outcome::kReady) {
+    return outcome == Outcome::kMiss ? Answer::kUndecided : Answer::kNotTaken;
   }
-  AnyVisit visit{view, query, found, take, context, t_inside, ray.end_s, false};
-  descendInStretches(view, ray, found.work, visit);
-  return visit.is_met;
+  AnyVisit visit{view, query, ray, found, take, context, ray.in_float.end_s, false};
+  descendInStretches(view, ray.in_float, found.work, visit);
+  return visit.is_met ? Answer::kYes : Answer::kUndecided;
 }
 
 struct AllVisit {
   const SceneView& view;
   const RayQuery& query;
+  const Ray& ray;
   Found& found;
   Take take;
   void* context;
@@ -163,8 +178,8 @@ struct AllVisit {
       return true;
     }
     ++found.work.boxes;
-    const Times t = timesOf(view.records[record], query);
-    if (t.enter_lo > t.exit_hi || t.enter_lo > query.t_end) {
+    const Times t = timesOf(view.records[record], ray);
+    if (t.enter_lo > t.exit_hi || t.enter_lo > ray.t_end) {
       return true;
     }
     return leaveToCaller(found, {box, t.enter_hi <= t.exit_lo, t.enter_lo, t.enter_hi, t.exit_hi},
@@ -172,14 +187,13 @@ struct AllVisit {
   }
 };
 
-static void all(const SceneView& view, const RayQuery& query, Found& found, Take take,
+static bool all(const SceneView& view, const RayQuery& query, Found& found, Take take,
                 void* context) {
-  found.count = 0;
-  found.work = Work();
-  FloatRay ray;
-  if (view.depth == 0 || !prepare(view, query, ray)) {
-    return;
+  Ray ray;
+  const Outcome outcome = begin(view, query, found, ray);
+  if (outcome == Outcome::kReady) {
+    AllVisit visit{view, query, ray, found, take, context};
+    descend(view, ray.in_float, found.work, visit);
   }
-  AllVisit visit{view, query, found, take, context};
-  descend(view, ray, found.work, visit);
+  return outcome != Outcome::kNotTaken;
 }
