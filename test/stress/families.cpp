@@ -351,8 +351,7 @@ const Family kFamilies[] = {
 
 Vector3 finite(const Vector3& v) {
   Vector3 result = v;
-  for (int i = 0; i < 3; ++i) {  // Eigen 3.3 has no iterators
-    double& x = result[i];
+  for (double& x : numbersOf(result)) {
     if (std::isnan(x)) {
       x = 0.0;
     } else if (std::isinf(x)) {
@@ -386,8 +385,7 @@ Sample makeSample(std::size_t family, bool oriented, std::uint64_t seed, std::ui
   } else if (auto* turned = std::get_if<OrientedBox>(&sample.box)) {
     turned->center = finite(turned->center);
     turned->half_extents = finite(turned->half_extents);
-    for (int i = 0; i < 4; ++i) {
-      double& c = turned->orientation.coeffs()[i];
+    for (double& c : numbersOf(turned->orientation.coeffs())) {
       c = std::min(std::max(c, -0x1p1023), 0x1p1023);
     }
     if ((turned->orientation.coeffs().array() == 0.0).all()) {

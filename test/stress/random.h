@@ -11,8 +11,23 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 namespace box_query::stress {
+
+/// The numbers of a vector or of a quaternion's coefficients, for loops: Eigen 3.3, which
+/// Ubuntu 20.04 has, gives them no begin and end.
+template <typename Number>
+struct Numbers {
+  Number* first;
+  Number* last;
+  Number* begin() const { return first; }
+  Number* end() const { return last; }
+};
+template <typename Matrix>
+auto numbersOf(Matrix& matrix) -> Numbers<std::remove_pointer_t<decltype(matrix.data())>> {
+  return {matrix.data(), matrix.data() + matrix.size()};
+}
 
 /// A stream that its key determines: any sample of any family can be made on its own.
 /// SplitMix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014).

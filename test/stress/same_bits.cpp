@@ -59,7 +59,7 @@ class Hash {
     } else {
       const auto& oriented = std::get<OrientedBox>(box);
       add(oriented.center);
-      for (const double c : oriented.orientation.coeffs()) {
+      for (const double c : numbersOf(oriented.orientation.coeffs())) {
         add(c);
       }
       add(oriented.half_extents);

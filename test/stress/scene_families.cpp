@@ -158,13 +158,13 @@ SceneSample nearTies(Random& random) {
 SceneSample farNest(Random& random) {
   SceneSample scene;
   Vector3 place;
-  for (double& coordinate : place) {
+  for (double& coordinate : numbersOf(place)) {
     coordinate = random.signedMagnitude(10, 25);
   }
   for (int i = boxCount(random); i > 0; --i) {
     const Vector3 center = random.chance(0.5) ? place : random.nudged(place, 4);
     Vector3 size;
-    for (double& extent : size) {
+    for (double& extent : numbersOf(size)) {
       extent = random.chance(0.1) ? 0.0 : random.magnitude(-6, 3);
     }
     const bool oriented = random.chance(0.7);

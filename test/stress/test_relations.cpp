@@ -163,7 +163,7 @@ TEST_F(Relations, QuaternionsTimesPowersOfTwoAreTheSameRotation) {
     if (box == nullptr) {
       return std::nullopt;
     }
-    for (double& c : box->orientation.coeffs()) {
+    for (double& c : numbersOf(box->orientation.coeffs())) {
       const double scaled = std::ldexp(c, power);
       if (std::ldexp(scaled, -power) != c || !std::isfinite(scaled)) {
         return std::nullopt;
@@ -250,7 +250,7 @@ TEST_F(Relations, ExactTranslationsChangeNothing) {
       return false;
     }
     Vector3 by;
-    for (double& x : by) {
+    for (double& x : numbersOf(by)) {
       x = static_cast<double>(random.between(-1000000, 1000000));
       x = std::ldexp(x, random.between(-20, 0));
     }

@@ -19,7 +19,7 @@ inline AlignedBox* alignedBox(Sample& sample) {
 
 /// v * 2^power if that is exact.
 inline bool scale(Vector3& v, int power) {
-  for (double& x : v) {
+  for (double& x : numbersOf(v)) {
     const double scaled = std::ldexp(x, power);
     if (std::ldexp(scaled, -power) != x || !std::isfinite(scaled)) {
       return false;
@@ -72,7 +72,7 @@ inline bool translate(Vector3& v, const Vector3& by) {
 /// A sample on a grid of 2^-20, so that there are exact translations.
 inline bool snapToGrid(Sample& s) {
   const auto snap = [](Vector3& v) {
-    for (double& x : v) {
+    for (double& x : numbersOf(v)) {
       if (!(std::fabs(x) < 0x1p20)) {
         return false;
       }
