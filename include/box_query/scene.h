@@ -96,6 +96,14 @@ struct Blockage {
   double blocked_at = std::numeric_limits<double>::infinity();
 };
 
+/// Which kernels scenes use: "avx512", "avx2" or "portable". They are the widest that the CPU has,
+/// or those that the environment variable BOX_QUERY_KERNEL names; answers are the same bits with
+/// each.
+const char* activeKernels() noexcept;
+/// Whether BOX_QUERY_KERNEL names kernels that there are not, or that this CPU cannot run: then it
+/// is as if it were not set.
+bool isKernelChoiceRefused() noexcept;
+
 /// An immutable set of boxes. All queries are const, take no lock and may run on any number of
 /// threads.
 ///

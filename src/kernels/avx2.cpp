@@ -5,6 +5,7 @@
 #if defined(__x86_64__)
 #include "exact/bounds.h"
 #include "exact/float_model.h"
+#include "kernels/float_bounds.h"
 
 #include <cmath>
 #include <cstdint>

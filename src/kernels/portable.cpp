@@ -2,6 +2,7 @@
 // The kernels for every CPU.
 #include "exact/bounds.h"
 #include "exact/float_model.h"
+#include "kernels/float_bounds.h"
 #include "kernels/kernels.h"
 
 #include <cmath>

@@ -4,6 +4,7 @@
 #include "ros/server.h"
 
 #include <box_query/ros/scene_monitor.h>
+#include <box_query/scene.h>
 
 #include <csignal>
 #include <cstring>
@@ -20,6 +21,10 @@ int main(int argc, char** argv) {
   }
   ros::init(argc, argv, "box_query");
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
+  if (box_query::isKernelChoiceRefused()) {
+    ROS_WARN("BOX_QUERY_KERNEL names no kernels that this CPU can run: portable, avx2, avx512");
+  }
+  ROS_INFO("Computing with the %s kernels", box_query::activeKernels());
   ros::NodeHandle nh;
   ros::NodeHandle private_nh("~");
   try {

@@ -32,6 +32,13 @@ Scene::Impl::Impl(std::vector<Box> all) : boxes(std::move(all)), simplest(boxes)
   view = tree.view();
 }
 
+const char* activeKernels() noexcept {
+  return kernels::active().name;
+}
+bool isKernelChoiceRefused() noexcept {
+  return kernels::isChoiceRefused();
+}
+
 Scene::Scene() : Scene(std::vector<Box>()) {}
 
 Scene::Scene(std::vector<Box> boxes) {

@@ -36,6 +36,7 @@ endfunction()
 
 bq_free_bounds(src/exact/bounds.h)
 bq_free_bounds(src/exact/distance_bounds.h)
+bq_free_bounds(src/kernels/float_bounds.h)
 bq_patch(src/exact/clip.h "if (!outside && order <= 0) {" "if (!outside && order <= (mutation.touching_misses ? -1 : 0)) {")
 bq_patch(src/exact/clip.h "if (enters >= 0) {" "if (enters >= (mutation.ties_name_one_face ? 1 : 0)) {")
 bq_patch(src/exact/clip.h "  return order != kUnknownSign;" "  return mutation.skip_exact_stage || order != kUnknownSign;")

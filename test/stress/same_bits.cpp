@@ -119,6 +119,7 @@ void addScene(const SceneSample& sample, Hash& answers) {
     answers.add(hit.point);
     answers.add(hit.normal);
     answers.add(scene.castAny(component.ray(), 1.0));
+    answers.add(static_cast<std::uint64_t>(scene.castClosest(component.ray(), 1.0).box));
     for (const BoxIntersection& found : scene.findAll(component.line())) {
       answers.add(static_cast<std::uint64_t>(found.box));
       answers.add(found.intersection);
@@ -175,5 +176,9 @@ void run(std::uint64_t count) {
 }  // namespace box_query::stress
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::strcmp(argv[1], "--kernels") == 0) {
+    std::puts(box_query::activeKernels());
+    return 0;
+  }
   box_query::stress::run(argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 400);
 }

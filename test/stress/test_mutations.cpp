@@ -6,9 +6,11 @@
 /// the suite was first seen to find wrong answers, so they also say how much slack there is.
 #include "exact/bounds.h"
 #include "exact/distance_bounds.h"
+#include "kernels/float_bounds.h"
 #include "stress/families.h"
 #include "stress/mutation.h"
 #include "stress/run_families.h"
+#include "stress/scene_families.h"
 
 #include <algorithm>
 
@@ -18,6 +20,7 @@ namespace box_query::stress {
 namespace {
 
 namespace bounds = exact::bounds;
+namespace float_bounds = kernels::bounds;
 
 constexpr std::uint64_t kSeed = 5;
 
@@ -36,6 +39,10 @@ std::uint64_t wrongPairs(const char* family, std::uint64_t count) {
 
 std::uint64_t wrongDistances(const char* family, std::uint64_t count) {
   return wrongAnswers(runDistances, familyNames(), family, count);
+}
+
+std::uint64_t wrongScenes(const char* family, std::uint64_t count) {
+  return wrongAnswers(runScenes, sceneFamilyNames(), family, count);
 }
 
 /// Gives a number another value as long as it lives.
@@ -107,6 +114,27 @@ TEST(Mutations, ShrunkBoundsOfDoubleDoubleOperationsAreNoticed) {
 TEST(Mutations, ShrunkBoundsOfDistancesAreNoticed) {
   const Spoilt<double> spoilt(bounds::kDistance, bounds::kDistance / 256);  // first seen at 1/128
   EXPECT_GT(wrongDistances("rounded_axis", 2000), 0U);
+}
+
+TEST(Mutations, AShrunkBoundOfTheSlopeOfDistancesIsNoticed) {
+  const Spoilt<double> spoilt(bounds::kSlope, 0.0);
+  EXPECT_GT(wrongDistances("rounded_axis", 3000), 0U);
+}
+
+TEST(Mutations, ShrunkBoundsOfRaysInFloatAreNoticed) {
+  const Spoilt<double> shift(float_bounds::kShiftError, float_bounds::kShiftError / 64);
+  const Spoilt<double> farther(float_bounds::kFarther, 1.0 + 0x1p-20 / 64);
+  EXPECT_GT(wrongScenes("scene_near_ties", 800), 0U);
+}
+
+TEST(Mutations, PlanesThatAreNotMovedApartForFlatRaysAreNoticed) {
+  const Spoilt<double> spoilt(float_bounds::kFlat, 0.0);
+  EXPECT_GT(wrongScenes("scene_lattice", 800), 0U);
+}
+
+TEST(Mutations, ShrunkBoundsOfDistancesInFloatAreNoticed) {
+  const Spoilt<double> spoilt(float_bounds::kLoss, float_bounds::kLoss / 64);
+  EXPECT_GT(wrongScenes("scene_shelves", 800), 0U);
 }
 
 }  // namespace

@@ -10,10 +10,6 @@
 // floats, points by twice as much again, and |w|, g' |.| and their sum by at most 16u of what they
 // are made of: kLoss covers them, relative to |w| and to |o|_1 + |d|_1.
 
-constexpr float kLoss = 0x1p-19F;
-/// More than a distance whose square a float cannot hold.
-constexpr float kShortest = 0x1p-60F;
-
 struct FloatSegment {
   Float16 origin[3];
   Float16 direction[3];
@@ -22,6 +18,8 @@ struct FloatSegment {
 };
 
 static inline FloatSegment floatSegment(const SceneView& view, const SegmentQuery& query) {
+  const auto loss = static_cast<float>(bounds::kLoss);
+  const auto shortest = static_cast<float>(bounds::kShortest);
   FloatSegment s;
   float squared = 0.0F;
   float size = 0.0F;
@@ -35,13 +33,15 @@ static inline FloatSegment floatSegment(const SceneView& view, const SegmentQuer
   }
   // A segment that is too short for its square is nearest wherever.
   s.inverse_squared = all16(squared > 0x1p-100F ? 1.0F / squared : 0.0F);
-  s.slack = all16(size * kLoss + 2.0F * kShortest);
+  s.slack = all16(size * loss + 2.0F * shortest);
   return s;
 }
 
 /// Lower bounds of the distance to sixteen bounds; +inf for an empty slot.
 /// @param upper receives an upper bound of the distance to anything that fills its bounds
 static inline Float16 distances(const Bounds& bounds, const FloatSegment& s, Float16* upper) {
+  const auto loss = static_cast<float>(bounds::kLoss);
+  const auto shortest = static_cast<float>(bounds::kShortest);
   const Float16 zero = all16(0.0F);
   const Float16 one = all16(1.0F);
   Float16 lo[3];
@@ -63,7 +63,7 @@ static inline Float16 distances(const Bounds& bounds, const FloatSegment& s, Flo
   const auto dotWith = [&](const Float16* v) {
     return multiplyAdd(v[2], w[2], multiplyAdd(v[1], w[1], v[0] * w[0]));
   };
-  Float16 curvature = all16(kShortest);
+  Float16 curvature = all16(shortest);
   for (int i = 0; i < 3; ++i) {
     curvature = curvature + orZeroWhereZero(s.direction[i] * s.direction[i], w[i]);
   }
@@ -71,7 +71,7 @@ static inline Float16 distances(const Bounds& bounds, const FloatSegment& s, Flo
   for (int i = 0; i < 3; ++i) {
     w[i] = excess(i);
   }
-  const Float16 length = squareRoot(dotWith(w) + all16(kShortest * kShortest));
+  const Float16 length = squareRoot(dotWith(w) + all16(shortest * shortest));
   const Float16 slope = dotWith(s.direction) / length;
   const Float16 fall = smaller(zero - t * slope, (one - t) * slope);
   if (upper != nullptr) {
@@ -80,9 +80,9 @@ static inline Float16 distances(const Bounds& bounds, const FloatSegment& s, Flo
       const Float16 side = hi[i] - lo[i];
       diagonal = multiplyAdd(side, side, diagonal);
     }
-    *upper = (length + squareRoot(diagonal)) * all16(1.0F + kLoss) + s.slack;
+    *upper = (length + squareRoot(diagonal)) * all16(1.0F + loss) + s.slack;
   }
-  return (length * all16(1.0F - kLoss) + fall) - s.slack;
+  return (length * all16(1.0F - loss) + fall) - s.slack;
 }
 
 /// Nodes and records that are still to be looked at, nearest first as far as possible.
@@ -127,7 +127,7 @@ class NearestSearch {
 
   void setBound(double bound) {
     // Rounded up; infinity stays.
-    bound_ = static_cast<float>(bound * kUp) + 0x1p-100F;
+    bound_ = static_cast<float>(bound * bounds::kUp) + static_cast<float>(bounds::kFloatUnderflow);
   }
 
   /// Looks at the sixteen slots of a node.

@@ -14,13 +14,7 @@
 
 enum class Outcome { kNotTaken, kMiss, kReady };
 
-constexpr double kShiftError = 0x1p-20;
-constexpr float kFarther = 1.0F + 0x1p-20F;
-/// The same for numbers that are rounded up by it.
-constexpr double kUp = 1.0 + 0x1p-20;
 constexpr double kSteepest = 0x1p40;
-/// More than what is lost where floats underflow.
-constexpr double kFloatUnderflow = 0x1p-100;
 
 struct FloatRay {
   int near_side[3];
@@ -40,7 +34,9 @@ struct FloatRay {
     end = all16(to);
   }
   /// Parameter t in s, rounded up.
-  float roundedUp(double t) const { return static_cast<float>(t * scale * kUp + kFloatUnderflow); }
+  float roundedUp(double t) const {
+    return static_cast<float>(t * scale * bounds::kUp + bounds::kFloatUnderflow);
+  }
 };
 
 /// A ray as the boxes of a scene are compared with it.
@@ -63,7 +59,6 @@ static inline bool areBetween(Double4 size, double least, double most) {
 
 /// Prepares a ray for the boxes of a scene.
 static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray& ray) {
-  namespace bounds = exact::bounds;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Double4 origin = lanes4(query.origin);
   const Double4 direction = lanes4(query.direction);
@@ -72,9 +67,9 @@ static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray&
   const Double4 scale = larger(larger(size, turned(size)), turnedTwice(size));
   FloatRay& f = ray.in_float;
   f.scale = firstLane(scale);
-  if (!(areBetween(magnitude(origin), bounds::kTiniest, bounds::kLargest) &&
-        areBetween(size, bounds::kSmallestComponent, bounds::kLargest) &&
-        f.scale >= bounds::kSmallestDirection &&
+  if (!(areBetween(magnitude(origin), exact::bounds::kTiniest, exact::bounds::kLargest) &&
+        areBetween(size, exact::bounds::kSmallestComponent, exact::bounds::kLargest) &&
+        f.scale >= exact::bounds::kSmallestDirection &&
         notBelow3(all4(kFarthestOrigin), magnitude(relative)) == 7U)) {
     return Outcome::kNotTaken;
   }
@@ -88,8 +83,8 @@ static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray&
   if (query.max_range < kInfinity) {
     const double* d = query.direction;
     const double t = query.max_range / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    ray.t_end = t * bounds::kInflate + bounds::kUnderflow;
-    ray.t_inside = t / bounds::kInflate - bounds::kUnderflow;
+    ray.t_end = t * exact::bounds::kInflate + exact::bounds::kUnderflow;
+    ray.t_inside = t / exact::bounds::kInflate - exact::bounds::kUnderflow;
   }
 
   const Double4 is_flat = isNotBelow(scale, all4(kSteepest) * size);
@@ -100,19 +95,19 @@ static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray&
   const Double4 near = (choose(lo, hi, direction) - relative) * inverse;
   const Double4 far = (choose(hi, lo, direction) - relative) * inverse;
   const Double4 shift = relative * inverse;
-  const Double4 error =
-      fused(magnitude(shift), all4(kShiftError), all4(kFloatUnderflow) * magnitude(inverse));
-  const Double4 nearest = (near - error) - all4(kShiftError) * magnitude(near);
-  const Double4 farthest = (far + error) + all4(kShiftError) * magnitude(far);
+  const Double4 error = fused(magnitude(shift), all4(bounds::kShiftError),
+                              all4(bounds::kFloatUnderflow) * magnitude(inverse));
+  const Double4 nearest = (near - error) - all4(bounds::kShiftError) * magnitude(near);
+  const Double4 farthest = (far + error) + all4(bounds::kShiftError) * magnitude(far);
   const double first = largest3(choose(nearest, all4(-kInfinity), is_flat), nearest).first;
   const double last = smallest3(choose(farthest, all4(kInfinity), is_flat), farthest).first;
   const double begin = first > 0.0 ? first : 0.0;
-  const double own = ray.t_end * f.scale * kUp;
+  const double own = ray.t_end * f.scale * bounds::kUp;
   const double end = last < own ? last : own;
   if (begin > end) {
     return Outcome::kMiss;
   }
-  const Double4 apart = error + choose(all4(0.0), all4(2.1 * end), is_flat);
+  const Double4 apart = error + choose(all4(0.0), all4(bounds::kFlat * end), is_flat);
   alignas(16) float inverses[4];
   alignas(16) float near_shifts[4];
   alignas(16) float far_shifts[4];
@@ -126,8 +121,8 @@ static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray&
     f.near_shift[i] = all16(near_shifts[i]);
     f.far_shift[i] = all16(far_shifts[i]);
   }
-  f.setRange(static_cast<float>(begin * (1.0 - kShiftError)),
-             static_cast<float>(end * kUp + kFloatUnderflow));
+  f.setRange(static_cast<float>(begin * (1.0 - bounds::kShiftError)),
+             static_cast<float>(end * bounds::kUp + bounds::kFloatUnderflow));
   return Outcome::kReady;
 }
 
@@ -144,5 +139,5 @@ static inline std::uint32_t meets(const Bounds& bounds, const FloatRay& ray, Flo
   };
   near = larger(larger(nearPlane(0), nearPlane(1)), larger(nearPlane(2), ray.begin));
   const Float16 far = smaller(smaller(farPlane(0), farPlane(1)), smaller(farPlane(2), ray.end));
-  return notAbove(near, far * all16(kFarther));
+  return notAbove(near, far * all16(static_cast<float>(bounds::kFarther)));
 }

@@ -41,7 +41,7 @@ bool descend(const SceneView& view, int level, const std::uint32_t* nodes, int c
   alignas(64) float nears[kListed + kSlots];
   const auto visitListed = [&] {
     for (int i = 0; i < listed; ++i) {
-      if (nears[i] <= ray.end_s * kFarther && !visit(list[i])) {
+      if (nears[i] <= ray.end_s * static_cast<float>(bounds::kFarther) && !visit(list[i])) {
         return false;
       }
     }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Every error bound of the stages in float, in one place: tests replace this file by one with
+/// smaller bounds and expect wrong answers. u = 2^-24.
+#pragma once
+
+namespace box_query::kernels::bounds {
+
+/// Rays: what the shifts of their planes lack, relative to |o_i r_i|: 5.3u. See generic/ray.h.
+constexpr double kShiftError = 0x1p-20;
+/// And the parameters at the planes, on both sides: 8.4u.
+constexpr double kFarther = 1.0 + 0x1p-20;
+/// How far the planes of an axis are moved apart along which a ray hardly goes, times its end: more
+/// than 2.
+constexpr double kFlat = 2.1;
+/// Numbers that are rounded to float upward by it.
+constexpr double kUp = 1.0 + 0x1p-20;
+/// More than what is lost where floats underflow.
+constexpr double kFloatUnderflow = 0x1p-100;
+
+/// Segments: distances, relative to themselves and to |o|_1 + |d|_1: 16u. See generic/nearest.h.
+constexpr double kLoss = 0x1p-19;
+/// More than a distance whose square a float cannot hold.
+constexpr double kShortest = 0x1p-60;
+
+}  // namespace box_query::kernels::bounds
