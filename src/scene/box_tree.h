@@ -14,11 +14,6 @@
 namespace box_query {
 
 /// A tree of sixteen children a node, all leaves at the same depth; up to 128 boxes are one list.
-///
-/// Built from the top by the surface area heuristic (J. Goldsmith and J. Salmon, "Automatic
-/// Creation of Object Hierarchies for Ray Tracing", 1987; binned after I. Wald, "On fast
-/// Construction of SAH-based Bounding Volume Hierarchies", 2007), where the cost of a part is its
-/// area times the leaves that it fills: a leaf costs the same whatever is in it.
 class BoxTree {
  public:
   BoxTree() = default;

@@ -39,11 +39,13 @@ no_slp=
 case $compiler in
   g++*) no_slp=-fno-tree-slp-vectorize ;;  # see bq_configure
 esac
+# The ordinary build is g++ -O3 without FMA.
 run_with -O0
-run_with -O3
-if grep -qw fma /proc/cpuinfo 2>/dev/null; then
-  run_with -O2 -mfma $no_slp
-else
+case $compiler in
+  g++*) ;;
+  *) run_with -O3 ;;
+esac
+if ! grep -qw fma /proc/cpuinfo 2>/dev/null; then
   echo "no FMA on this machine: not compared"
 fi
 run_with -O3 -march=native $no_slp
