@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// How fast scenes answer, beside what a user would pick instead: the same questions in turns in
+/// one run, wrong answers counted beside every time.
+#pragma once
+
+#include "benchmark/timing.h"
+
+#include <box_query/scene.h>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace box_query::benchmark {
+
+/// Boxes, and rays to ask about them. Directions are of unit length.
+struct SpeedScene {
+  std::vector<OrientedBox> boxes;
+  std::vector<Ray> rays;
+};
+
+/// Scenes of one kind that are timed together.
+struct Workload {
+  std::string name;
+  std::vector<SpeedScene> scenes;
+};
+
+/// "sparse", "dense": boxes with half extents from 0.1 to 1.5 m, anyhow turned, in a cube of side
+/// 10 or 4 cbrt(N) m. "clusters": in heaps. "needles": ten times as long as wide. "shelves":
+/// upright ones on a grid, turned about z only.
+Workload makeWorkload(const std::string& kind, std::size_t boxes, std::size_t rays,
+                      std::uint64_t seed);
+const std::vector<std::string>& workloadKinds();
+/// Every n-th of the recorded scenes in `directory`; empty if there are none.
+Workload recordedScenes(const std::string& directory, std::size_t every, std::size_t rays);
+
+/// A question about a scene and a ray.
+enum class Question { kClosest30, kClosest, kRounded30, kAny30, kSegment, kClearance };
+constexpr Question kQuestions[] = {Question::kClosest30, Question::kClosest, Question::kRounded30,
+                                   Question::kAny30,     Question::kSegment, Question::kClearance};
+const char* nameOf(Question question);
+/// How far a closest or any query looks [m], and the lengths of segments.
+constexpr double kRange = 30.0;
+constexpr double kSegmentLength = 10.0;
+constexpr double kPathLength = 2.0;
+
+inline Segment segmentAlong(const Ray& ray, double length) {
+  return {ray.origin, ray.origin + length * ray.direction};
+}
+
+/// The box that a method finds, kNoBox for none; any box stands for a yes. Clearances come as a
+/// distance.
+struct SpeedAnswer {
+  std::size_t box = kNoBox;
+  double distance = 0.0;
+};
+
+/// A method over the boxes of one scene. What it cannot be asked it says by canAnswer().
+class SpeedMethod {
+ public:
+  virtual ~SpeedMethod() = default;
+  virtual bool canAnswer(Question question) const = 0;
+  virtual SpeedAnswer ask(Question question, const Ray& ray) const = 0;
+  /// Asks about all rays, so that what is timed is one call, and returns a sum of the answers.
+  virtual std::uint64_t pass(Question question, const std::vector<Ray>& rays) const = 0;
+};
+
+/// The loop of pass(), for each method compiled with its own ask().
+template <typename Method>
+std::uint64_t passOf(const Method& method, Question question, const std::vector<Ray>& rays) {
+  std::uint64_t sum = 0;
+  for (const Ray& ray : rays) {
+    const SpeedAnswer answer = method.Method::ask(question, ray);
+    sum = 31 * sum + answer.box + static_cast<std::uint64_t>(answer.distance * 1e6);
+  }
+  return sum;
+}
+
+struct SpeedMethodKind {
+  std::string name;
+  std::function<std::unique_ptr<SpeedMethod>(const std::vector<OrientedBox>&)> make;
+};
+
+/// box_query first, then a plain scan, then the peers that were found.
+std::vector<SpeedMethodKind> speedMethods();
+/// Of the peers, those that were not found and what is known of those that were, a line each.
+std::vector<std::string> peerNotes();
+
+/// @return null where Embree was not found when this was built
+std::unique_ptr<SpeedMethod> makeEmbreeBoxes(const std::vector<OrientedBox>& boxes);
+std::unique_ptr<SpeedMethod> makeEmbreeTriangles(const std::vector<OrientedBox>& boxes);
+
+/// One line of the table.
+struct SpeedRow {
+  std::string workload;
+  std::size_t boxes;  ///< in the mean
+  Question question;
+  std::string method;
+  Timing timing;  ///< ratios: to box_query
+  std::size_t asked;
+  std::size_t hits;
+  /// Answers that are wrong by more than a nanometre; of box_query wrong ones at all.
+  std::size_t wrong;
+};
+
+/// @param rounds turns of each method on the clock
+/// @param sample rays whose answers are compared with one exact pair after the other
+std::vector<SpeedRow> measureSpeed(const Workload& workload, int rounds, std::size_t sample);
+
+}  // namespace box_query::benchmark
