@@ -50,6 +50,7 @@ struct SceneView {
   alignas(32) double center[4];
   /// Around all boxes, relative to the center: [minimum or maximum][axis].
   alignas(32) double around[2][4];
+  bool has_aligned;  ///< some records are of aligned boxes
   /// How far a ray goes in the mean before it meets a box.
   double mean_free_path;
 };
@@ -87,9 +88,11 @@ struct Work {
 /// What a query found out. More candidates than it holds go to the caller in portions.
 struct Found {
   static constexpr int kCapacity = 64;
-  Candidate candidates[kCapacity];
   int count;
+  /// A box that is certainly entered before this parameter is certainly in range.
+  double t_inside;
   Work work;
+  Candidate candidates[kCapacity];
 };
 
 /// Takes the candidates of a full list; the query goes on with an empty one.

@@ -243,6 +243,7 @@ BoxTree::BoxTree(const std::vector<PreparedBox>& boxes) {
   box_of_record_.reserve(builder.items().size());
   for (const Item& item : builder.items()) {
     records_.push_back(recordOf(boxes[item.box]));
+    has_aligned_ = has_aligned_ || records_.back().isAligned();
     box_of_record_.push_back(item.box);
   }
 }
@@ -261,6 +262,7 @@ kernels::SceneView BoxTree::view() const {
     view.around[0][i] = around_[0][i];
     view.around[1][i] = around_[1][i];
   }
+  view.has_aligned = has_aligned_;
   view.mean_free_path = mean_free_path_;
   return view;
 }

@@ -39,6 +39,7 @@ class BoxTree {
   std::vector<std::uint32_t> left_out_;
   double center_[3] = {0.0, 0.0, 0.0};
   double around_[2][3] = {};
+  bool has_aligned_ = false;
   double mean_free_path_ = 0.0;
 };
 

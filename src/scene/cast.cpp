@@ -77,7 +77,22 @@ Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noe
 ClosestBox Scene::castClosest(const Ray& ray, double max_range,
                               const BoxMask* mask) const noexcept {
   FirstEntered<Ray> first(ray, impl_->simplest, impl_->prepared);
-  impl_->findFirst(first, max_range, mask);
+  kernels::Found found;
+  Vector3 direction;
+  const bool taken = impl_->kernels.closest(impl_->view, rayQuery(ray, max_range, mask, direction),
+                                            found, FirstEntered<Ray>::take, &first);
+  if (taken && impl_->tree.left_out().empty() && !first.any()) {
+    // As a rule the kernel has decided everything.
+    const kernels::Candidate& c = found.candidates[0];
+    if (found.count == 0) {
+      return {};
+    }
+    if (found.count == 1 && c.certain && c.enter_hi <= found.t_inside) {
+      return {true, c.box, c.enter_lo, c.enter_hi};
+    }
+  }
+  first.offer(found);
+  impl_->offerOthers(first, taken, max_range, mask);
   if (!first.any()) {
     return {};
   }

@@ -27,6 +27,10 @@ struct Scene::Impl {
   template <typename T>
   void findFirst(FirstEntered<T>& first, double max_range, const BoxMask* mask) const;
 
+  /// Those of them that the kernels did not look at.
+  template <typename T>
+  void offerOthers(FirstEntered<T>& first, bool taken, double max_range, const BoxMask* mask) const;
+
   /// Whether any box is met, entered at a range of at most `max_range` metres.
   /// @param decide decide(index) says so exactly, where doubles cannot
   template <typename T, typename Decide>

@@ -28,12 +28,8 @@ inline Reach reachOf(const DoubleComponent& c, double max_range) {
 }
 
 template <typename T>
-void Scene::Impl::findFirst(FirstEntered<T>& first, double max_range, const BoxMask* mask) const {
-  kernels::Found found;
-  Vector3 direction;
-  const bool taken = kernels.closest(view, rayQuery(first.linear(), max_range, mask, direction),
-                                     found, FirstEntered<T>::take, &first);
-  first.offer(found);
+void Scene::Impl::offerOthers(FirstEntered<T>& first, bool taken, double max_range,
+                              const BoxMask* mask) const {
   if (!taken || !tree.left_out().empty()) {
     const double t_end = reachOf(first.component(), max_range).outside;
     forEachOther(tree, taken, boxes.size(), mask, [&](std::size_t i) {
@@ -41,6 +37,16 @@ void Scene::Impl::findFirst(FirstEntered<T>& first, double max_range, const BoxM
       return true;
     });
   }
+}
+
+template <typename T>
+void Scene::Impl::findFirst(FirstEntered<T>& first, double max_range, const BoxMask* mask) const {
+  kernels::Found found;
+  Vector3 direction;
+  const bool taken = kernels.closest(view, rayQuery(first.linear(), max_range, mask, direction),
+                                     found, FirstEntered<T>::take, &first);
+  first.offer(found);
+  offerOthers(first, taken, max_range, mask);
 }
 
 template <typename T, typename Decide>

@@ -96,6 +96,13 @@ static inline void storeAsFloats(float* p, const Double4& a) {
     p[i] = static_cast<float>(a.v[i]);
   }
 }
+/// Of signs.
+static inline Double4 operator&(const Double4& a, const Double4& b) {
+  return each4([&](int i) { return std::signbit(a.v[i]) && std::signbit(b.v[i]) ? -1.0 : 1.0; });
+}
+static inline Double4 operator|(const Double4& a, const Double4& b) {
+  return each4([&](int i) { return std::signbit(a.v[i]) || std::signbit(b.v[i]) ? -1.0 : 1.0; });
+}
 /// Lanes whose sign is set where a >= b.
 static inline Double4 isNotBelow(const Double4& a, const Double4& b) {
   return each4([&](int i) { return a.v[i] >= b.v[i] ? -1.0 : 1.0; });

@@ -99,6 +99,12 @@ static inline double firstLane(Double4 a) {
 static inline void storeAsFloats(float* p, Double4 a) {
   _mm_store_ps(p, _mm256_cvtpd_ps(a.v));
 }
+static inline Double4 operator&(Double4 a, Double4 b) {
+  return {_mm256_and_pd(a.v, b.v)};
+}
+static inline Double4 operator|(Double4 a, Double4 b) {
+  return {_mm256_or_pd(a.v, b.v)};
+}
 /// Lanes whose sign is set where a >= b.
 static inline Double4 isNotBelow(Double4 a, Double4 b) {
   return {_mm256_cmp_pd(a.v, b.v, _CMP_GE_OQ)};

@@ -16,13 +16,12 @@ enum class Outcome { kNotTaken, kMiss, kReady };
 
 constexpr double kSteepest = 0x1p40;
 
+/// (Not kept in sixteen lanes: what was just written is read back sooner as single floats.)
 struct FloatRay {
   int near_side[3];
-  Float16 inverse[3];
-  Float16 near_shift[3];
-  Float16 far_shift[3];
-  Float16 begin;
-  Float16 end;
+  alignas(16) float inverse[4];
+  alignas(16) float near_shift[4];
+  alignas(16) float far_shift[4];
   float begin_s;
   float end_s;
   double scale;  ///< |d|_max: s = t * scale
@@ -30,8 +29,6 @@ struct FloatRay {
   void setRange(float from, float to) {
     begin_s = from;
     end_s = to;
-    begin = all16(from);
-    end = all16(to);
   }
   /// Parameter t in s, rounded up.
   float roundedUp(double t) const {
@@ -51,10 +48,10 @@ struct Ray {
   double t_inside;  ///< a box that is certainly entered before it is certainly in range
 };
 
-/// Whether the three numbers are 0 or of a size between the two.
-static inline bool areBetween(Double4 size, double least, double most) {
-  return (notBelow3(all4(most), size) &
-          (notBelow3(size, all4(least)) | notBelow3(all4(0.0), size))) == 7U;
+/// Lanes whose sign is set where the number is 0 or of a size from `least` to `most`.
+static inline Double4 isBetween(Double4 size, double least, double most) {
+  return isNotBelow(all4(most), size) &
+         (isNotBelow(size, all4(least)) | isNotBelow(all4(0.0), size));
 }
 
 /// Prepares a ray for the boxes of a scene.
@@ -65,18 +62,23 @@ static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray&
   const Double4 size = magnitude(direction);
   const Double4 relative = origin - load4(view.center);
   const Double4 scale = larger(larger(size, turned(size)), turnedTwice(size));
+  ray.t_inside = 0.0;
   FloatRay& f = ray.in_float;
   f.scale = firstLane(scale);
-  if (!(areBetween(magnitude(origin), exact::bounds::kTiniest, exact::bounds::kLargest) &&
-        areBetween(size, exact::bounds::kSmallestComponent, exact::bounds::kLargest) &&
-        f.scale >= exact::bounds::kSmallestDirection &&
-        notBelow3(all4(kFarthestOrigin), magnitude(relative)) == 7U)) {
+  const Double4 is_fit =
+      isBetween(magnitude(origin), exact::bounds::kTiniest, exact::bounds::kLargest) &
+      isBetween(size, exact::bounds::kSmallestComponent, exact::bounds::kLargest) &
+      isNotBelow(all4(kFarthestOrigin), magnitude(relative)) &
+      isNotBelow(scale, all4(exact::bounds::kSmallestDirection));
+  if (signs3(is_fit) != 7U) {
     return Outcome::kNotTaken;
   }
   ray.origin = query.origin;
   ray.direction = query.direction;
-  ray.inverse = all4(1.0) / direction;
   ray.signs = direction;
+  if (view.has_aligned) {
+    ray.inverse = all4(1.0) / direction;
+  }
   ray.own_end = query.has_end ? 1.0 : kInfinity;
   ray.t_end = ray.own_end;
   ray.t_inside = ray.own_end;
@@ -90,36 +92,34 @@ static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray&
   const Double4 is_flat = isNotBelow(scale, all4(kSteepest) * size);
   const Double4 inverse =
       choose(scale / direction, withSignOf(all4(kSteepest), direction), is_flat);
-  const Double4 lo = load4(view.around[0]);
-  const Double4 hi = load4(view.around[1]);
-  const Double4 near = (choose(lo, hi, direction) - relative) * inverse;
-  const Double4 far = (choose(hi, lo, direction) - relative) * inverse;
   const Double4 shift = relative * inverse;
-  const Double4 error = fused(magnitude(shift), all4(bounds::kShiftError),
-                              all4(bounds::kFloatUnderflow) * magnitude(inverse));
-  const Double4 nearest = (near - error) - all4(bounds::kShiftError) * magnitude(near);
-  const Double4 farthest = (far + error) + all4(bounds::kShiftError) * magnitude(far);
-  const double first = largest3(choose(nearest, all4(-kInfinity), is_flat), nearest).first;
-  const double last = smallest3(choose(farthest, all4(kInfinity), is_flat), farthest).first;
-  const double begin = first > 0.0 ? first : 0.0;
-  const double own = ray.t_end * f.scale * bounds::kUp;
-  const double end = last < own ? last : own;
-  if (begin > end) {
-    return Outcome::kMiss;
+  Double4 apart = fused(magnitude(shift), all4(bounds::kShiftError),
+                        all4(bounds::kFloatUnderflow) * magnitude(inverse));
+  double begin = 0.0;
+  double end = ray.t_end * f.scale * bounds::kUp;
+  if (view.depth > 1 || signs3(is_flat) != 0) {
+    // Clipped to the bounds of the scene; those of a short list are as quickly compared.
+    const Double4 lo = load4(view.around[0]);
+    const Double4 hi = load4(view.around[1]);
+    const Double4 near = (choose(lo, hi, direction) - relative) * inverse;
+    const Double4 far = (choose(hi, lo, direction) - relative) * inverse;
+    const Double4 nearest = (near - apart) - all4(bounds::kShiftError) * magnitude(near);
+    const Double4 farthest = (far + apart) + all4(bounds::kShiftError) * magnitude(far);
+    const double first = largest3(choose(nearest, all4(-kInfinity), is_flat), nearest).first;
+    const double last = smallest3(choose(farthest, all4(kInfinity), is_flat), farthest).first;
+    begin = first > 0.0 ? first : 0.0;
+    end = last < end ? last : end;
+    if (begin > end) {
+      return Outcome::kMiss;
+    }
+    apart = apart + choose(all4(0.0), all4(bounds::kFlat * end), is_flat);
   }
-  const Double4 apart = error + choose(all4(0.0), all4(bounds::kFlat * end), is_flat);
-  alignas(16) float inverses[4];
-  alignas(16) float near_shifts[4];
-  alignas(16) float far_shifts[4];
-  storeAsFloats(inverses, inverse);
-  storeAsFloats(near_shifts, negated(shift) - apart);
-  storeAsFloats(far_shifts, apart - shift);
+  storeAsFloats(f.inverse, inverse);
+  storeAsFloats(f.near_shift, negated(shift) - apart);
+  storeAsFloats(f.far_shift, apart - shift);
   const unsigned goes_down = signs3(direction);
   for (int i = 0; i < 3; ++i) {
     f.near_side[i] = static_cast<int>((goes_down >> i) & 1U);
-    f.inverse[i] = all16(inverses[i]);
-    f.near_shift[i] = all16(near_shifts[i]);
-    f.far_shift[i] = all16(far_shifts[i]);
   }
   f.setRange(static_cast<float>(begin * (1.0 - bounds::kShiftError)),
              static_cast<float>(end * bounds::kUp + bounds::kFloatUnderflow));
@@ -130,14 +130,15 @@ static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray&
 /// @param near where it enters them, too early by at most what the floats cannot tell
 static inline std::uint32_t meets(const Bounds& bounds, const FloatRay& ray, Float16& near) {
   const auto nearPlane = [&](int i) {
-    return multiplyAdd(load16(bounds.plane[ray.near_side[i]][i]), ray.inverse[i],
-                       ray.near_shift[i]);
+    return multiplyAdd(load16(bounds.plane[ray.near_side[i]][i]), all16(ray.inverse[i]),
+                       all16(ray.near_shift[i]));
   };
   const auto farPlane = [&](int i) {
-    return multiplyAdd(load16(bounds.plane[1 - ray.near_side[i]][i]), ray.inverse[i],
-                       ray.far_shift[i]);
+    return multiplyAdd(load16(bounds.plane[1 - ray.near_side[i]][i]), all16(ray.inverse[i]),
+                       all16(ray.far_shift[i]));
   };
-  near = larger(larger(nearPlane(0), nearPlane(1)), larger(nearPlane(2), ray.begin));
-  const Float16 far = smaller(smaller(farPlane(0), farPlane(1)), smaller(farPlane(2), ray.end));
+  near = larger(larger(nearPlane(0), nearPlane(1)), larger(nearPlane(2), all16(ray.begin_s)));
+  const Float16 far =
+      smaller(smaller(farPlane(0), farPlane(1)), smaller(farPlane(2), all16(ray.end_s)));
   return notAbove(near, far * all16(static_cast<float>(bounds::kFarther)));
 }

@@ -50,7 +50,6 @@ struct ClosestVisit {
     bound_s = f.roundedUp(t);
     if (bound_s < f.end_s) {
       f.end_s = bound_s;
-      f.end = all16(bound_s);
     }
   }
 
@@ -83,6 +82,7 @@ static inline Outcome begin(const SceneView& view, const RayQuery& query, Found&
   found.count = 0;
   found.work = Work();
   const Outcome outcome = prepare(view, query, ray);
+  found.t_inside = ray.t_inside;
   return outcome == Outcome::kReady && view.depth == 0 ? Outcome::kMiss : outcome;
 }
 

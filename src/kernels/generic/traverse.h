@@ -67,12 +67,40 @@ bool descend(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
   return descend(view, top, kRoots, static_cast<int>(view.levels[top].nodes), ray, work, visit);
 }
 
+/// Of a tree that is one list: all bounds are compared before any box is.
+template <typename Visit>
+void visitList(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
+  constexpr int kWords = 64 / kSlots;  // nodes a word
+  constexpr int kLongest = 8;          // nodes of the longest list
+  alignas(64) float nears[kLongest * kSlots];
+  std::uint64_t words[kLongest / kWords] = {0, 0};
+  const Level& list = view.levels[0];
+  const auto count = static_cast<int>(list.nodes);
+  work.nodes += list.nodes;
+  for (int k = 0; k < count; ++k) {
+    Float16 near;
+    const std::uint64_t bits = meets(list.bounds[k], ray, near);
+    store16(nears + k * kSlots, near);
+    words[k / kWords] |= bits << (k % kWords * kSlots);
+  }
+  // Nodes of a list are full, but for the last: slot number and record are the same.
+  for (int w = 0; w < kLongest / kWords; ++w) {
+    for (std::uint64_t bits = words[w]; bits != 0; bits &= bits - 1) {
+      const int record = 64 * w + __builtin_ctzll(bits);
+      if (nears[record] <= ray.end_s * static_cast<float>(bounds::kFarther) &&
+          !visit(static_cast<std::uint32_t>(record))) {
+        return;
+      }
+    }
+  }
+}
+
 /// Visits records from near to far, a stretch of the ray at a time, as long as visit.end() [s] lies
 /// beyond. A record may be visited in more than one stretch.
 template <typename Visit>
 void descendInStretches(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
   if (view.depth == 1) {
-    descend(view, ray, work, visit);
+    visitList(view, ray, work, visit);
     return;
   }
   float begin = ray.begin_s;
