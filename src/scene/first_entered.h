@@ -27,6 +27,21 @@ Solution solveBox(const T& linear, const DoubleComponent& component, const Box& 
                Prepared<OrientedSlabs>{prepared.oriented, moderate, prepared.compact});
 }
 
+/// Where the face of a box is on the same axis of the world, exactly: nothing if it is not across
+/// it.
+inline std::optional<exact::DoubleDouble> worldPlane(const Box& any, int axis, bool positive) {
+  if (const auto* box = std::get_if<AlignedBox>(&any)) {
+    return exact::DoubleDouble{positive ? box->max[axis] : box->min[axis], 0.0};
+  }
+  const auto& box = *std::get_if<OrientedBox>(&any);
+  const auto turn = box.orientation.vec();
+  if (turn[(axis + 1) % 3] != 0.0 || turn[(axis + 2) % 3] != 0.0 || !isCompact(box)) {
+    return std::nullopt;
+  }
+  const double extent = box.half_extents[axis];
+  return exact::twoSum(box.center[axis], positive ? extent : -extent);
+}
+
 /// Takes boxes in any order; of those that are entered first the one of the lowest index stays.
 template <typename T>
 class FirstEntered {
@@ -108,19 +123,22 @@ class FirstEntered {
     }
   }
 
-  /// Whether an aligned box begins at a face of the best one that is entered, so that it is entered
-  /// with it or later, and has the higher index: the rule in a row of shelves.
+  /// Whether a box begins at a face of the best one that is entered, across an axis of the world,
+  /// so that it is entered with it or later, and has the higher index: the rule among shelves.
   bool isBehindEnteredFace(const Entry& entry) {
-    const auto* box = std::get_if<AlignedBox>(&boxes_[entry.box]);
-    const auto* best = std::get_if<AlignedBox>(&boxes_[best_.box]);
-    if (box == nullptr || best == nullptr || entry.box < best_.box) {
+    if (entry.box < best_.box) {
       return false;
     }
     const FaceSet entered = solutionOf(best_).entered;
-    for (int i = 0; i < 3; ++i) {
-      if ((entered.contains(i, false) && box->min[i] == best->min[i]) ||
-          (entered.contains(i, true) && box->max[i] == best->max[i])) {
-        return true;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const bool positive : {false, true}) {
+        if (entered.contains(axis, positive)) {
+          const auto face = worldPlane(boxes_[best_.box], axis, positive);
+          const auto front = worldPlane(boxes_[entry.box], axis, positive);
+          if (face && front && face->hi == front->hi && face->lo == front->lo) {
+            return true;
+          }
+        }
       }
     }
     return false;

@@ -143,6 +143,25 @@ TEST(SceneCast, ANormalIsThatOfTheLowestAxis) {
   EXPECT_NEAR((hit.normal - Vector3(-1, 0, 0)).norm(), 0.0, 1e-15);
 }
 
+TEST(SceneCast, BoardsWithOneUpperFaceTieToTheLowestIndex) {
+  // 0.1 + 0.2 is no double: the faces are at one height, which no double holds.
+  std::vector<Box> boards;
+  for (int i = 0; i < 200; ++i) {
+    const double turn = 0.01 * (i + 1);
+    const double thickness = i % 2 == 0 ? 0.2 : 0.1;
+    boards.emplace_back(OrientedBox{{0.001 * i, 0.0, thickness == 0.2 ? 0.1 : 0.2},
+                                    Quaternion(std::cos(turn), 0, 0, std::sin(turn)),
+                                    {2.0, 2.0, thickness}});
+  }
+  boards.emplace_back(AlignedBox{{-1, -1, 0}, {1, 1, 0.1 + 0.2}});  // rounded up: higher
+  const Ray down{{0.25, 0.125, 5.0}, {0.125, 0.0, -1.0}};
+  EXPECT_EQ(200U, Scene(boards).cast(down).box);
+  boards.pop_back();
+  EXPECT_EQ(0U, Scene(boards).cast(down).box);
+  std::swap(boards[0], boards[199]);
+  EXPECT_EQ(0U, Scene(boards).cast(down).box);
+}
+
 TEST(SceneCastClosest, SaysTheBoxOfCastAndEnclosesItsParameter) {
   const Scene scene({cubeAt(20), cubeAt(10, 1), turnedCubeAt(10), cubeAt(-10)});
   const ClosestBox closest = scene.castClosest(kAlongX);
