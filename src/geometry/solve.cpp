@@ -4,7 +4,7 @@
 #include "exact/stage_counters.h"
 #include "geometry/moved_into.h"
 #include "geometry/planes.h"
-#include "kernels/kernels.h"
+#include "geometry/solve_by_kernel.h"
 
 #include <array>
 #include <type_traits>
@@ -186,6 +186,13 @@ exact::Dyadic squaredLength(const T& linear) {
 template <typename T, typename BoxType>
 bool meetsSlowly(const T& linear, const DoubleComponent& component, const BoxType& box) {
   if (component.compact && isCompact(box)) {
+    if constexpr (std::is_same_v<BoxType, OrientedBox>) {
+      Solution solution;
+      if (solveByKernel(linear, component, box, solution)) {
+        ++exact::stageCounters().certified_decisions;
+        return solution.num_points > 0;
+      }
+    }
     BasicClip<Certified> clip;
     if (certifiedClip(linear, box, clip)) {
       return clip.num_points > 0;
@@ -213,62 +220,6 @@ bool meetsByStages(const T& linear, const BoxType& box, const Prepared<SlabsType
     }
   }
   return meetsSlowly(linear, component, box);
-}
-
-/// The same by a kernel, of which more comes than the faces.
-/// @return whether it is clear
-template <typename T>
-bool solveByKernel(const T& linear, const DoubleComponent& component, const OrientedBox& box,
-                   Solution& solution) {
-  const auto cross = kernels::active().cross;
-  if (cross == nullptr) {
-    return false;
-  }
-  double direction_low[3] = {0.0, 0.0, 0.0};
-  if constexpr (kHasEnd<T>) {
-    for (int i = 0; i < 3; ++i) {
-      direction_low[i] = exactDirection(linear, i).lo;
-    }
-  }
-  const kernels::CrossingQuery query{box.orientation.coeffs().data(),
-                                     box.center.data(),
-                                     box.half_extents.data(),
-                                     component.origin,
-                                     component.direction,
-                                     direction_low,
-                                     kHasStart<T>,
-                                     kHasEnd<T>};
-  kernels::Crossing enter;
-  kernels::Crossing exit;
-  switch (cross(query, enter, exit)) {
-    case kernels::Crossed::kMiss:
-      return true;
-    case kernels::Crossed::kUnclear:
-      return false;
-    case kernels::Crossed::kHit:
-      break;
-  }
-  const auto set = [](const kernels::Crossing& from, double own, Crossing& to) {
-    to.axis = from.axis;
-    to.positive = from.positive;
-    if (from.axis == kernels::Crossing::kOwn) {
-      to.t = {own, 1.0};
-    } else {
-      to.estimate = {{from.t[0], from.t[1]}, from.error};
-    }
-  };
-  solution.num_points = 2;
-  set(enter, 0.0, solution.enter);
-  set(exit, 1.0, solution.exit);
-  if (enter.axis == kernels::Crossing::kOwn) {
-    solution.started_inside = kHasStart<T>;
-  } else {
-    solution.entered.insert(enter.axis, enter.positive);
-  }
-  if (exit.axis != kernels::Crossing::kOwn) {
-    solution.left.insert(exit.axis, exit.positive);
-  }
-  return true;
 }
 
 template <typename T, typename BoxType, typename SlabsType>
