@@ -29,9 +29,9 @@ constexpr double kAlignedSlab = 8 * kUnit;
 /// More than underflow can add to eta.
 constexpr double kUnderflow = 0x1p-960;
 
-/// Double-double rows of the unnormalised frame (n = |q|^2, M = n R). Where every sum is normalised,
-/// n and M are within 12u^2 n, a dot product of three adds 22u^2 n |v|_1, so that d is within
-/// 34u^2 n |D|_1; +-n e - y adds 14u^2 n e and 3u^2 n (S + e). Where sums are not
+/// Double-double rows of the unnormalised frame (n = |q|^2, M = n R). Where every sum is
+/// normalised, n and M are within 12u^2 n, a dot product of three adds 22u^2 n |v|_1, so that d is
+/// within 34u^2 n |D|_1; +-n e - y adds 14u^2 n e and 3u^2 n (S + e). Where sums are not
 /// (kernels/generic/wide.h), n and M are within 8u^2 n and their second parts below 3u n, a dot
 /// product adds 34u^2 n |v|_1, +-n e - y another 12u^2 n e and 23u^2 n (S + E): together 77u^2.
 constexpr double kRow = 128 * kUnit * kUnit;

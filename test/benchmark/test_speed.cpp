@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// That the benchmark of speed compares methods on questions with both answers, and finds none of the
-// library's wrong. No time is judged.
+// That the benchmark of speed compares methods on questions with both answers, and finds none of
+// the library's wrong. No time is judged.
 #include "benchmark/speed.h"
 
 #include <gtest/gtest.h>

@@ -48,16 +48,6 @@ static inline Float16 larger(Float16 a, Float16 b) {
 static inline Float16 smaller(Float16 a, Float16 b) {
   return {_mm256_min_ps(a.lo, b.lo), _mm256_min_ps(a.hi, b.hi)};
 }
-/// The smallest lane that is no NaN, or +inf.
-static inline float smallestLane(Float16 a) {
-  alignas(64) float lanes[kSlots];
-  store16(lanes, a);
-  float least = std::numeric_limits<float>::infinity();
-  for (int i = 0; i < kSlots; ++i) {
-    least = lanes[i] < least ? lanes[i] : least;
-  }
-  return least;
-}
 /// A bit for every lane in which a <= b.
 static inline std::uint32_t notAbove(Float16 a, Float16 b) {
   const int lo = _mm256_movemask_ps(_mm256_cmp_ps(a.lo, b.lo, _CMP_LE_OQ));

@@ -179,16 +179,6 @@ static inline Float16 larger(const Float16& a, const Float16& b) {
 static inline Float16 smaller(const Float16& a, const Float16& b) {
   return each16([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; });
 }
-/// The smallest lane that is no NaN, or +inf.
-static inline float smallestLane(const Float16& a) {
-  alignas(64) float lanes[kSlots];
-  store16(lanes, a);
-  float least = std::numeric_limits<float>::infinity();
-  for (int i = 0; i < kSlots; ++i) {
-    least = lanes[i] < least ? lanes[i] : least;
-  }
-  return least;
-}
 /// A bit for every lane in which a <= b.
 static inline std::uint32_t notAbove(const Float16& a, const Float16& b) {
   std::uint32_t bits = 0;

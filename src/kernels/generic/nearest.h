@@ -85,6 +85,16 @@ static inline Float16 distances(const Bounds& bounds, const FloatSegment& s, Flo
   return (length * all16(1.0F - loss) + fall) - s.slack;
 }
 
+/// The smallest lane that is no NaN, or +inf.
+static inline float smallestLane(const Float16& a) {
+  alignas(64) float lanes[kSlots];
+  store16(lanes, a);
+  float least = std::numeric_limits<float>::infinity();
+  for (int i = 0; i < kSlots; ++i) {
+    least = lanes[i] < least ? lanes[i] : least;
+  }
+  return least;
+}
 /// Nodes and records that are still to be looked at, nearest first as far as possible.
 class NearestSearch {
  public:

@@ -1,8 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The queries of kernels.h.
 
-static inline bool isLookedAt(const RayQuery& query, std::uint32_t box) {
-  return query.mask == nullptr || ((query.mask[box / 64] >> (box % 64)) & 1U) != 0;
+/// Compares the ray with a record.
+/// @return false if its box is not looked at, or certainly not entered at a parameter up to `bound`
+static inline bool mayEnter(const SceneView& view, const RayQuery& query, const Ray& ray,
+                            double bound, std::uint32_t record, Work& work, Candidate& candidate) {
+  const std::uint32_t box = view.box_of_record[record];
+  if (query.mask != nullptr && ((query.mask[box / 64] >> (box % 64)) & 1U) == 0) {
+    return false;
+  }
+  ++work.boxes;
+  const Times t = timesOf(view.records[record], ray);
+  candidate = {box, t.enter_hi <= t.exit_lo, t.enter_lo, t.enter_hi, t.exit_hi};
+  return t.enter_lo <= t.exit_hi && t.enter_lo <= bound;
 }
 
 struct ClosestVisit {
@@ -19,28 +29,22 @@ struct ClosestVisit {
   float end() const { return bound_s; }
 
   bool operator()(std::uint32_t record) {
-    const std::uint32_t box = view.box_of_record[record];
-    if (!isLookedAt(query, box)) {
+    Candidate c;
+    if (!mayEnter(view, query, ray, bound, record, found.work, c)) {
       return true;
     }
-    ++found.work.boxes;
-    const Times t = timesOf(view.records[record], ray);
-    if (t.enter_lo > t.exit_hi || t.enter_lo > bound) {
-      return true;
-    }
-    const bool certain = t.enter_hi <= t.exit_lo;
-    if (certain && t.enter_hi < bound) {
-      shorten(t.enter_hi);
-      if (t.enter_hi < earliest) {
+    if (c.certain && c.enter_hi < bound) {
+      shorten(c.enter_hi);
+      if (c.enter_hi < earliest) {
         found.count = 0;  // all others are later
-        earliest = t.enter_lo;
+        earliest = c.enter_lo;
       }
     }
     if (found.count == Found::kCapacity) {
       makeRoom();
     }
-    earliest = earliest < t.enter_lo ? earliest : t.enter_lo;
-    found.candidates[found.count++] = {box, certain, t.enter_lo, t.enter_hi, t.exit_hi};
+    earliest = earliest < c.enter_lo ? earliest : c.enter_lo;
+    found.candidates[found.count++] = c;
     return true;
   }
 
@@ -134,21 +138,15 @@ struct AnyVisit {
   float end() const { return end_s; }
 
   bool operator()(std::uint32_t record) {
-    const std::uint32_t box = view.box_of_record[record];
-    if (!isLookedAt(query, box)) {
+    Candidate c;
+    if (!mayEnter(view, query, ray, ray.t_end, record, found.work, c)) {
       return true;
     }
-    ++found.work.boxes;
-    const Times t = timesOf(view.records[record], ray);
-    if (t.enter_lo > t.exit_hi || t.enter_lo > ray.t_end) {
-      return true;
-    }
-    const bool certain = t.enter_hi <= t.exit_lo;
-    if (certain && t.enter_hi <= ray.t_inside) {
+    if (c.certain && c.enter_hi <= ray.t_inside) {
       is_met = true;
       return false;
     }
-    return leaveToCaller(found, {box, certain, t.enter_lo, t.enter_hi, t.exit_hi}, take, context);
+    return leaveToCaller(found, c, take, context);
   }
 };
 
@@ -173,17 +171,9 @@ struct AllVisit {
   void* context;
 
   bool operator()(std::uint32_t record) {
-    const std::uint32_t box = view.box_of_record[record];
-    if (!isLookedAt(query, box)) {
-      return true;
-    }
-    ++found.work.boxes;
-    const Times t = timesOf(view.records[record], ray);
-    if (t.enter_lo > t.exit_hi || t.enter_lo > ray.t_end) {
-      return true;
-    }
-    return leaveToCaller(found, {box, t.enter_hi <= t.exit_lo, t.enter_lo, t.enter_hi, t.exit_hi},
-                         take, context);
+    Candidate c;
+    return !mayEnter(view, query, ray, ray.t_end, record, found.work, c) ||
+           leaveToCaller(found, c, take, context);
   }
 };
 

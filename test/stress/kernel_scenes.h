@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Boxes for the tests of kernels, and the kernels that the CPU has.
+#pragma once
+
+#include "kernels/kernels.h"
+#include "scene/prepared_boxes.h"
+#include "stress/random.h"
+
+#include <box_query/geometry.h>
+
+#include <cmath>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace box_query::stress {
+
+inline std::vector<PreparedBox> prepareAll(const std::vector<Box>& boxes) {
+  std::vector<PreparedBox> prepared;
+  for (const Box& any : boxes) {
+    prepared.push_back(std::visit([](const auto& box) { return PreparedBox(box); }, any));
+  }
+  return prepared;
+}
+
+inline std::vector<const kernels::Kernels*> allKernels() {
+  std::vector<const kernels::Kernels*> all;
+  for (const char* name : {"portable", "avx2", "avx512"}) {
+    if (const kernels::Kernels* kernels = kernels::byName(name)) {
+      all.push_back(kernels);
+    }
+  }
+  return all;
+}
+
+/// In a cube, a fifth of them aligned.
+inline std::vector<Box> scattered(Random& random, std::size_t count, double spacing) {
+  const double side = spacing * std::cbrt(static_cast<double>(count));
+  std::vector<Box> boxes;
+  while (boxes.size() < count) {
+    const Vector3 center = random.uniformVector(0.0, side);
+    const Vector3 size = random.uniformVector(0.1, 1.5);
+    if (random.chance(0.2)) {
+      boxes.emplace_back(AlignedBox{center - size, center + size});
+    } else {
+      boxes.emplace_back(OrientedBox{center, random.rotation(), size});
+    }
+  }
+  return boxes;
+}
+
+inline std::string nameOf(const testing::TestParamInfo<const kernels::Kernels*>& info) {
+  return info.param->name;
+}
+
+}  // namespace box_query::stress

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// That the kernels offer every box that may be the nearest to a segment, or near enough.
+#include "kernels/kernels.h"
+#include "scene/box_tree.h"
+#include "scene/search.h"
+#include "stress/kernel_scenes.h"
+#include "stress/random.h"
+#include "stress/scene_families.h"
+
+#include <box_query/distance.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace box_query::stress {
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+class NearestKernelTest : public testing::TestWithParam<const kernels::Kernels*> {};
+
+double distanceTo(const Segment& segment, const Box& any) {
+  return std::visit([&](const auto& box) { return distance(segment, box).distance; }, any);
+}
+
+/// How many segments were nearest to a box at some distance.
+int checkNearest(const kernels::Kernels& kernels, const std::vector<Box>& boxes,
+                 const Segment& segment) {
+  const BoxTree tree(prepareAll(boxes));
+  const kernels::SceneView view = tree.view();
+  if (!isForKernels(segment, view)) {
+    return 0;
+  }
+  struct Search {
+    const std::vector<Box>& boxes;
+    const Segment& segment;
+    bool shrinks;
+    double bound;
+    std::set<std::size_t> offered;
+  };
+  const auto offer = [](void* context, std::uint32_t box) {
+    auto& search = *static_cast<Search*>(context);
+    search.offered.insert(box);
+    if (search.shrinks) {
+      search.bound = std::min(search.bound, distanceTo(search.segment, search.boxes[box]));
+    }
+    return search.bound;
+  };
+  std::vector<double> truth;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const bool left_out = std::binary_search(tree.left_out().begin(), tree.left_out().end(), i);
+    truth.push_back(left_out ? kInf : distanceTo(segment, boxes[i]));
+  }
+  const double least = *std::min_element(truth.begin(), truth.end());
+  const auto querySegment = [&](double bound, bool shrinks) {
+    return kernels::SegmentQuery{{segment.start[0], segment.start[1], segment.start[2]},
+                                 {segment.end[0], segment.end[1], segment.end[2]},
+                                 bound,
+                                 shrinks,
+                                 nullptr};
+  };
+  kernels::Work work;
+  Search shrinking{boxes, segment, true, kInf, {}};
+  kernels.nearest(view, querySegment(kInf, true), offer, &shrinking, work);
+  Search fixed{boxes, segment, false, 1.5 * least, {}};
+  kernels.nearest(view, querySegment(fixed.bound, false), offer, &fixed, work);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    if (std::isinf(truth[i])) {
+      continue;
+    }
+    EXPECT_TRUE(truth[i] > least || shrinking.offered.count(i) == 1) << "box " << i;
+    EXPECT_TRUE(truth[i] > fixed.bound || fixed.offered.count(i) == 1) << "box " << i;
+  }
+  return least > 0.0 ? 1 : 0;
+}
+
+TEST_P(NearestKernelTest, OfferTheNearestInHostileScenes) {
+  int asked = 0;
+  int apart = 0;
+  for (std::size_t family = 0; family < sceneFamilyNames().size(); ++family) {
+    for (std::uint64_t index = 0; index < 60; ++index) {
+      const SceneSample scene = makeScene(family, 12, index);
+      for (const Sample& s : scene.components) {
+        apart += checkNearest(*GetParam(), scene.boxes, s.segment());
+        ++asked;
+      }
+    }
+  }
+  EXPECT_GT(apart, asked / 10);
+}
+
+TEST_P(NearestKernelTest, OfferTheNearestAtAnyDepthAndScale) {
+  for (const std::size_t count : {1, 17, 129, 1300}) {
+    for (const double scale : {0x1p-70, 1.0, 0x1p50}) {
+      Random random(21, count, 0);
+      std::vector<Box> boxes = scattered(random, count, 6.0);
+      const double side = 6.0 * std::cbrt(static_cast<double>(count));
+      for (Box& any : boxes) {
+        if (auto* box = std::get_if<AlignedBox>(&any)) {
+          *box = {scale * box->min, scale * box->max};
+        } else {
+          auto& oriented = std::get<OrientedBox>(any);
+          oriented.center *= scale;
+          oriented.half_extents *= scale;
+        }
+      }
+      int apart = 0;
+      for (int i = 0; i < 12; ++i) {
+        const Vector3 start = random.uniformVector(-0.2 * side, 1.2 * side);
+        const double length = i % 3 == 0 ? 0.0 : random.magnitude(-6, 5);
+        const Vector3 end = start + length * random.uniformVector(-1.0, 1.0);
+        apart += checkNearest(*GetParam(), boxes, {scale * start, scale * end});
+      }
+      EXPECT_GT(apart, 2) << count << " boxes, scale " << scale;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, NearestKernelTest, testing::ValuesIn(allKernels()), nameOf);
+
+}  // namespace
+}  // namespace box_query::stress
