@@ -12,8 +12,9 @@
 
 namespace box_query {
 
-/// Whether the component and the closed solid have a point in common: the separating axes of the
-/// paper's section 2, in the box's own frame where they are the overlap of three slabs.
+/// Whether the component and the closed solid have a point in common, by the method of separating
+/// axes (paper, section 2) in the box's own frame: in doubles as the overlap of three slabs, which
+/// is the same question, and where those cannot tell as the paper has it, without a division.
 /// @pre isValid(component) && isValid(box)
 bool testIntersection(const Line& line, const AlignedBox& box) noexcept;
 bool testIntersection(const Ray& ray, const AlignedBox& box) noexcept;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "geometry/solve.h"
 
+#include "exact/separating_axes.h"
 #include "exact/stage_counters.h"
 #include "geometry/moved_into.h"
 #include "geometry/planes.h"
@@ -182,6 +183,13 @@ exact::Dyadic squaredLength(const T& linear) {
   return exact::dot(direction, direction);
 }
 
+template <typename Number, typename T, typename BoxType>
+int meetsBySeparatingAxes(const T& linear, const BoxType& box) {
+  const auto component = exact::basicComponent<Number>(linear);
+  return exact::meetsBySeparatingAxes(exact::basicSlabs(component, box, true), kHasStart<T>,
+                                      kHasEnd<T>);
+}
+
 /// Whether the component meets the box, where the filter could not tell.
 template <typename T, typename BoxType>
 bool meetsSlowly(const T& linear, const DoubleComponent& component, const BoxType& box) {
@@ -193,13 +201,14 @@ bool meetsSlowly(const T& linear, const DoubleComponent& component, const BoxTyp
         return solution.num_points > 0;
       }
     }
-    BasicClip<Certified> clip;
-    if (certifiedClip(linear, box, clip)) {
-      return clip.num_points > 0;
+    ++exact::stageCounters().certified_decisions;
+    const int meets = meetsBySeparatingAxes<Certified>(linear, box);
+    if (meets != exact::kUnknownSign) {
+      return meets == 1;
     }
   }
   ++exact::stageCounters().exact_decisions;
-  return exactClip(linear, box).num_points > 0;
+  return meetsBySeparatingAxes<exact::Dyadic>(linear, box) == 1;
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 /// @file
 /// Exact relations between answers, to the last bit, over all families of hostile input. They need
 /// no oracle. BOX_QUERY_STRESS_RELATIONS changes how many of each are tried.
+#include "exact/clip.h"
+#include "exact/separating_axes.h"
 #include "stress/random.h"
 #include "stress/relations.h"
 #include "stress/transformations.h"
@@ -9,6 +11,7 @@
 #include <cstdlib>
 #include <functional>
 #include <optional>
+#include <variant>
 
 #include <gtest/gtest.h>
 
@@ -341,6 +344,31 @@ TEST_F(Relations, TestFindAndDistanceAgree) {
     }
     return true;
   });
+}
+
+template <typename T>
+void checkSeparatingAxes(const T& linear, const Box& box, int& hits) {
+  const exact::Slabs slabs =
+      std::visit([&](const auto& b) { return exact::slabs(exact::component(linear), b); }, box);
+  exact::Clip clip;
+  exact::clip(slabs, exact::kHasStart<T>, exact::kHasEnd<T>, clip);
+  EXPECT_EQ(clip.num_points > 0 ? 1 : 0,
+            exact::meetsBySeparatingAxes(slabs, exact::kHasStart<T>, exact::kHasEnd<T>));
+  hits += clip.num_points > 0 ? 1 : 0;
+}
+
+TEST(SeparatingAxes, SeparateJustWhereClippingLeavesNothing) {
+  constexpr std::uint64_t kEach = 300;
+  int hits = 0;
+  for (std::size_t family = 0; family < familyNames().size(); ++family) {
+    for (std::uint64_t index = 0; index < kEach; ++index) {
+      const Sample sample = makeSample(family, index % 2 == 0, 31, index);
+      checkSeparatingAxes(sample.line(), sample.box, hits);
+      checkSeparatingAxes(sample.ray(), sample.box, hits);
+      checkSeparatingAxes(sample.segment(), sample.box, hits);
+    }
+  }
+  EXPECT_GT(hits, static_cast<int>(3 * kEach * familyNames().size() / 5));
 }
 
 }  // namespace
