@@ -220,5 +220,16 @@ TEST(FindIntersection, OrientedBoxesAreExactlyOrthogonalWhateverTheNorm) {
   }
 }
 
+// The kernels compared sums that were not normalised with bounds of double-doubles: a false miss.
+TEST(FindIntersection, ALineInAFacePlaneOfABoxThatIsHardlyTurned) {
+  const OrientedBox box{
+      {-0.5, -1, -1}, Quaternion(-0x1.ccf7b05b93319p-42, 0, 0x1.fffffffffffffp-1, 0), {2, 0, 2}};
+  const Vector3 origin(-0x1.bfffffffff198p+1, -3, 0x1.0000000002b37p+0);
+  const Intersection touch = checked(Line{origin, {2, 2, -0x1.ccf7b05b9331ap-40}}, box);
+  EXPECT_EQ(touch.num_points, 1);
+  EXPECT_EQ(touch.t_enter, 1.0);
+  EXPECT_EQ(touch.entered, faces({2}));
+}
+
 }  // namespace
 }  // namespace box_query

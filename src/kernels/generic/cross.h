@@ -57,10 +57,11 @@ static Crossed cross(const CrossingQuery& query, Crossing& enter, Crossing& exit
 
   // Enclosures in double. What hardly moves along an axis, |d| <= 2^30 den_error, moves by less
   // than 2^32 num_error within the box: it stays between the planes, or outside, or nothing is
-  // clear.
+  // clear. What extent and position have in their second parts, up to 12u n (S + E) in the terms of
+  // bounds::kRow, is below 2^50 num_error.
   const Double4 is_flat = isNotBelow(all4(0x1p30) * den_error, magnitude(den.hi));
   const Double4 room = extent.hi - magnitude(position.hi);
-  const Double4 drift = all4(0x1p33) * num_error;
+  const Double4 drift = all4(0x1p50) * num_error;
   const unsigned flat = signs3(is_flat);
   const unsigned inside = notBelow3(room, drift);
   if ((flat & ~inside) != 0) {
