@@ -27,8 +27,12 @@ bool isNearUnit(const Quaternion& q) {
 
 const std::array<const char*, kRejections>& rejectionNames() {
   static const std::array<const char*, kRejections> names = {
-      "a number that is not finite", "a negative size", "an orientation that is no unit quaternion",
-      "an empty or malformed frame", "an unknown action"};
+      "a number that is not finite",
+      "a negative size",
+      "an orientation that is no unit quaternion",
+      "an empty or malformed frame",
+      "an unknown action",
+      "a shape without three sides"};
   return names;
 }
 
@@ -36,10 +40,11 @@ std::size_t BoxChange::rejected() const {
   return std::accumulate(rejections.begin(), rejections.end(), std::size_t{0});
 }
 
-void BoxChange::reject(Rejection why, std::size_t count, const std::string& detail) {
+void BoxChange::reject(Rejection why, std::size_t count, const std::string& detail,
+                       std::int64_t box_id) {
   const auto reason = static_cast<std::size_t>(why);
   if (count > 0 && problem.empty()) {
-    problem = "box " + std::to_string(id) + " of namespace '" + ns + "' has " +
+    problem = "box " + std::to_string(box_id) + " of namespace '" + ns + "' has " +
               rejectionNames().at(reason) + " (" + detail + ")";
   }
   rejections.at(reason) += static_cast<std::uint32_t>(count);
@@ -48,15 +53,15 @@ void BoxChange::reject(Rejection why, std::size_t count, const std::string& deta
 void BoxChange::add(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
                     const Vector3& size) {
   if (!center.allFinite()) {
-    reject(Rejection::kNotFinite, 1, "its position");
+    reject(Rejection::kNotFinite, 1, "its position", box_id);
   } else if (!orientation.coeffs().allFinite()) {
-    reject(Rejection::kNotFinite, 1, "its orientation");
+    reject(Rejection::kNotFinite, 1, "its orientation", box_id);
   } else if (!size.allFinite()) {
-    reject(Rejection::kNotFinite, 1, "its size");
+    reject(Rejection::kNotFinite, 1, "its size", box_id);
   } else if ((size.array() < 0.0).any()) {
-    reject(Rejection::kNegativeSize, 1, print(size.minCoeff()) + " m");
+    reject(Rejection::kNegativeSize, 1, print(size.minCoeff()) + " m", box_id);
   } else if (!isNearUnit(orientation)) {
-    reject(Rejection::kOrientation, 1, "its norm is " + print(orientation.norm()));
+    reject(Rejection::kOrientation, 1, "its norm is " + print(orientation.norm()), box_id);
   } else {
     boxes.push_back({box_id, {center, orientation, 0.5 * size}});
   }
@@ -66,6 +71,8 @@ const std::vector<BoxSource>& boxSources() {
   static const std::vector<BoxSource> sources = {
       {"visualization_msgs/MarkerArray", "d155b9ce5188fbaf89745847fd5882d7", decodeMarkerArray},
       {"visualization_msgs/Marker", "4048c9de2a16f4ae8e0538085ebf1b97", decodeMarker},
+      {"jsk_recognition_msgs/BoundingBoxArray", "c8f4a8bb1acd18ce778d183912bb472d",
+       decodeJskBoundingBoxArray},
   };
   return sources;
 }
@@ -103,8 +110,12 @@ DecodedMessage decodeMessage(const BoxSource& source, const std::uint8_t* data, 
   return message;
 }
 
-std::string stripSlash(std::string_view frame) {
-  return std::string(!frame.empty() && frame.front() == '/' ? frame.substr(1) : frame);
+std::string_view stripSlash(std::string_view frame) {
+  return !frame.empty() && frame.front() == '/' ? frame.substr(1) : frame;
+}
+
+bool isBadFrame(std::string_view frame) {
+  return frame.empty() || frame.front() == '/';
 }
 
 std::string tooManyBoxes(std::size_t max_boxes) {

@@ -19,8 +19,8 @@
 namespace box_query {
 
 /// Why a box is rejected.
-enum class Rejection { kNotFinite, kNegativeSize, kOrientation, kFrame, kAction };
-constexpr std::size_t kRejections = 5;
+enum class Rejection { kNotFinite, kNegativeSize, kOrientation, kFrame, kAction, kShape };
+constexpr std::size_t kRejections = 6;
 /// A few words each, in the order of the enumeration.
 const std::array<const char*, kRejections>& rejectionNames();
 
@@ -52,8 +52,8 @@ struct BoxChange {
   std::string problem;                                  ///< what was wrong with the first of them
 
   std::size_t rejected() const;
-  /// Counts `boxes` bad ones.
-  void reject(Rejection why, std::size_t boxes, const std::string& detail);
+  /// Counts `boxes` bad ones, the first of which is `box_id`.
+  void reject(Rejection why, std::size_t boxes, const std::string& detail, std::int64_t box_id);
   /// The only door for boxes: checks one, halves its `size` (full sides [m]) and appends it, or
   /// rejects it. A half is exact, but for sides below 2^-1021 m, where it is rounded to nearest.
   void add(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
@@ -63,6 +63,9 @@ struct BoxChange {
 /// What a message says.
 struct DecodedMessage {
   std::vector<BoxChange> changes;
+  /// These boxes are all that the topic has: what it said before is gone.
+  bool whole = false;
+  ros::Time stamp;          ///< of a message without changes; 0: none
   std::size_t ignored = 0;  ///< markers of a type that is no box
   std::string problem;      ///< not empty: the message is refused, and its changes mean nothing
 };
@@ -86,7 +89,10 @@ DecodedMessage decodeMessage(const BoxSource& source, const std::uint8_t* data, 
                              std::size_t max_boxes);
 
 /// A frame as tf2 wants it: publishers of the days of tf1 lead with a slash, which tf2 refuses.
-std::string stripSlash(std::string_view frame);
+/// The result is a view into `frame`.
+std::string_view stripSlash(std::string_view frame);
+/// Whether a frame without its leading slash is empty, or one that tf2 would still refuse.
+bool isBadFrame(std::string_view frame);
 
 /// The problem of a message with too many boxes.
 std::string tooManyBoxes(std::size_t max_boxes);
@@ -94,5 +100,6 @@ std::string tooManyBoxes(std::size_t max_boxes);
 // The decoders, each in its own file.
 void decodeMarker(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeMarkerArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
+void decodeJskBoundingBoxArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 
 }  // namespace box_query

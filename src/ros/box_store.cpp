@@ -70,7 +70,7 @@ void BoxStore::place(Word&& word, const std::string& locked_frame) {
   item.boxes = std::move(change.boxes);
 }
 
-void BoxStore::giveUp(const Word& word, const std::string& problem) {
+void BoxStore::reject(const Word& word, std::size_t boxes, const std::string& problem) {
   Topic& topic = topics_.at(word.topic);
   if (!wants(word)) {
     return;
@@ -78,8 +78,12 @@ void BoxStore::giveUp(const Word& word, const std::string& problem) {
   Item& item = itemOf(word);
   if (word.number == item.latest_word) {
     item.problem = item.problem.empty() ? problem : item.problem;
-    setMissing(topic, item, 0, item.rejected + item.waiting);
+    setMissing(topic, item, item.waiting - boxes, item.rejected + boxes);
   }
+}
+
+void BoxStore::giveUp(const Word& word, const std::string& problem) {
+  reject(word, word.change.boxes.size(), problem);
 }
 
 void BoxStore::remove(std::size_t topic_index, const std::string& ns, std::int64_t id) {
@@ -107,6 +111,22 @@ void BoxStore::clear(std::size_t topic_index) {
   }
   topic = Topic();
   last_item_ = nullptr;
+}
+
+void BoxStore::forgetBefore(std::size_t topic_index, std::uint64_t word) {
+  Topic& topic = topics_.at(topic_index);
+  last_item_ = nullptr;
+  for (auto items = topic.items.begin(); items != topic.items.end();) {
+    for (auto next = items->second.begin(); next != items->second.end();) {
+      if (next->second.latest_word <= word) {
+        forget(topic, next->second);
+        next = items->second.erase(next);
+      } else {
+        ++next;
+      }
+    }
+    items = items->second.empty() ? topic.items.erase(items) : std::next(items);
+  }
 }
 
 std::size_t BoxStore::expire(const ros::Time& now) {

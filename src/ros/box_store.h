@@ -72,11 +72,19 @@ class BoxStore {
   /// The boxes of a wanted word, now in the fixed frame (or in `locked_frame`, if not empty).
   void place(Word&& word, const std::string& locked_frame);
 
+  /// Counts some boxes of a word that is about to be placed as rejected, unless a later word has
+  /// come.
+  void reject(const Word& word, std::size_t boxes, const std::string& problem);
+
   /// Counts the boxes of a word that cannot be placed as rejected, unless a later word has come.
   void giveUp(const Word& word, const std::string& problem);
 
   void remove(std::size_t topic, const std::string& ns, std::int64_t id);
   void clear(std::size_t topic);
+  /// Forgets what the topic has not said again since that word.
+  void forgetBefore(std::size_t topic, std::uint64_t word);
+  /// Words that are heard from now on have higher numbers.
+  std::uint64_t lastWord() const { return last_word_; }
 
   /// Forgets what has ended by `now`. @return the number of boxes that were placed or waiting.
   std::size_t expire(const ros::Time& now);

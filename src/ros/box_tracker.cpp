@@ -17,8 +17,13 @@ std::string waitingOf(std::size_t boxes, const std::string& topic) {
   return boxesOf(boxes, topic) + (boxes == 1 ? " waits" : " wait");
 }
 
+std::string nameOf(const BoxChange& change, std::int64_t box_id) {
+  return "box " + std::to_string(box_id) + " of namespace '" + change.ns + "'";
+}
+
+/// The name of its first box.
 std::string nameOf(const BoxChange& change) {
-  return "box " + std::to_string(change.id) + " of namespace '" + change.ns + "'";
+  return nameOf(change, change.boxes.empty() ? change.id : change.boxes.front().id);
 }
 
 std::string describe(const WaitingList::Place& place, const std::string& fixed_frame) {
@@ -69,11 +74,15 @@ void BoxTracker::receive(std::size_t topic_index, const BoxSource* source, Decod
   topic.state.heard = true;
   topic.state.last_message = now;
   if (message.changes.empty()) {
-    noteStamp(now, now);
+    noteStamp(message.stamp, now);
   }
   cached_place_.reset();
+  const std::uint64_t last_word = store_.lastWord();
   for (BoxChange& change : message.changes) {
-    apply(topic_index, std::move(change), now);
+    apply(topic_index, std::move(change), message.whole, now);
+  }
+  if (message.whole) {
+    store_.forgetBefore(topic_index, last_word);
   }
 }
 
@@ -88,7 +97,7 @@ void BoxTracker::setUnheard(std::size_t topic_index, std::size_t publishers,
   }
 }
 
-void BoxTracker::apply(std::size_t topic, BoxChange&& change, const ros::Time& now) {
+void BoxTracker::apply(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now) {
   if (change.kind == BoxChange::Kind::kClear) {
     store_.clear(topic);
     noteStamp(change.stamp, now);
@@ -105,7 +114,8 @@ void BoxTracker::apply(std::size_t topic, BoxChange&& change, const ros::Time& n
       }
     }
     Word word = store_.hear(topic, std::move(change), now);
-    if (!word.change.boxes.empty() || rejected == 0) {
+    // A marker that is bad leaves what it said before in place; a whole set does not.
+    if (!word.change.boxes.empty() || rejected == 0 || whole) {
       place(std::move(word));
     }
   }
@@ -135,15 +145,25 @@ void BoxTracker::placeAt(const FramePose& pose, Word&& word) {
   for (IdentifiedBox& box : word.change.boxes) {
     finite = moveBox(pose, box.box) && finite;
   }
-  if (finite) {
-    store_.place(std::move(word), "");
-  } else {
-    counts_.rejected_boxes += word.change.boxes.size();
-    counts_.rejections[rejectionNames()[static_cast<std::size_t>(Rejection::kNotFinite)]] +=
-        word.change.boxes.size();
-    store_.giveUp(word, nameOf(word.change) + " is too far away for double numbers in frame '" +
-                            parameters_.fixed_frame + "'");
+  if (!finite) {
+    rejectLostBoxes(word);
   }
+  if (!word.change.boxes.empty()) {
+    store_.place(std::move(word), "");
+  }
+}
+
+void BoxTracker::rejectLostBoxes(Word& word) {
+  IdentifiedBoxes& boxes = word.change.boxes;
+  const auto is_lost = [](const IdentifiedBox& box) { return !box.box.center.allFinite(); };
+  const auto count = static_cast<std::size_t>(std::count_if(boxes.begin(), boxes.end(), is_lost));
+  const std::int64_t first = std::find_if(boxes.begin(), boxes.end(), is_lost)->id;
+  counts_.rejected_boxes += count;
+  counts_.rejections[rejectionNames()[static_cast<std::size_t>(Rejection::kNotFinite)]] += count;
+  store_.reject(word, count,
+                nameOf(word.change, first) + " is too far away for double numbers in frame '" +
+                    parameters_.fixed_frame + "'");
+  boxes.erase(std::remove_if(boxes.begin(), boxes.end(), is_lost), boxes.end());
 }
 
 void BoxTracker::wait(Word&& word) {
@@ -297,7 +317,7 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
     }
     const auto before = [](const Row& a, const Row& b) { return a.id < b.id; };
     if (!std::is_sorted(rows.begin(), rows.end(), before)) {  // boxes of lists interleave
-      std::sort(rows.begin(), rows.end(), before);
+      std::stable_sort(rows.begin(), rows.end(), before);
     }
     for (const Row& row : rows) {
       OrientedBox box = *row.box;

@@ -72,9 +72,11 @@ class BoxTracker {
     std::string latest_type;  ///< of the publisher that came last, if some cannot be heard
   };
 
-  void apply(std::size_t topic, BoxChange&& change, const ros::Time& now);
+  void apply(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now);
   void place(Word&& word);
   void placeAt(const FramePose& pose, Word&& word);
+  /// Rejects the boxes of a word whose transform overflowed.
+  void rejectLostBoxes(Word& word);
   void wait(Word&& word);
   void noteStamp(const ros::Time& stamp, const ros::Time& now);
   const std::optional<FramePose>& pose(const WaitingList::Place& place);

@@ -56,18 +56,13 @@ void addPoints(WireReader& reader, std::uint32_t points, const Shape& shape, Box
   }
 }
 
-bool isBadFrame(const std::string& frame) {
-  return frame.empty() || frame.front() == '/';
-}
-
 /// Appends one marker. `boxes` counts those of the message so far.
 void readMarker(WireReader& reader, std::size_t max_boxes, std::size_t& boxes,
                 DecodedMessage& message) {
   BoxChange& change = message.changes.emplace_back();
-  reader.skip(sizeof(std::uint32_t));  // header.seq
-  change.stamp = reader.time();
-  const std::string_view frame = reader.string();
-  change.frame = stripSlash(frame);
+  const WireHeader header = reader.header();
+  change.stamp = header.stamp;
+  change.frame = stripSlash(header.frame);
   change.ns = reader.string();
   change.id = reader.number<std::int32_t>();
   const auto type = reader.number<std::int32_t>();
@@ -103,13 +98,13 @@ void readMarker(WireReader& reader, std::size_t max_boxes, std::size_t& boxes,
   if (adds && isBadFrame(change.frame)) {
     const std::size_t good = change.boxes.size();
     change.boxes.clear();
-    change.reject(Rejection::kFrame, good, "'" + std::string(frame) + "'");
+    change.reject(Rejection::kFrame, good, "'" + std::string(header.frame) + "'", change.id);
   } else if (action == Marker::DELETEALL) {
     change.kind = BoxChange::Kind::kClear;  // whatever its ns is
   } else if (action == Marker::DELETE) {
     change.kind = BoxChange::Kind::kRemove;
   } else if (action != Marker::ADD) {
-    change.reject(Rejection::kAction, 1, std::to_string(action));
+    change.reject(Rejection::kAction, 1, std::to_string(action), change.id);
   } else if (!adds) {
     change.kind = BoxChange::Kind::kRemove;  // what is no box replaces what was one
     ++message.ignored;

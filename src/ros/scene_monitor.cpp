@@ -41,7 +41,7 @@ constexpr std::int64_t kClockStep = 1000000000;
 
 /// The parameters with names as the rest of the program compares them.
 Parameters resolved(const ros::NodeHandle& nh, Parameters parameters) {
-  parameters.fixed_frame = stripSlash(parameters.fixed_frame);
+  parameters.fixed_frame = std::string(stripSlash(parameters.fixed_frame));
   std::set<std::string> names;
   for (TopicParameters& topic : parameters.box_topics) {
     topic.topic = nh.resolveName(topic.topic);

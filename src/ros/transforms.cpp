@@ -44,8 +44,8 @@ Transforms::Transforms(const ros::NodeHandle& nh, const ros::Duration& history,
 std::string Transforms::lookUp(const std::string& target_frame, const std::string& source_frame,
                                const ros::Time& stamp, double timeout,
                                geometry_msgs::TransformStamped& transform) {
-  const std::string target = stripSlash(target_frame);
-  const std::string source = stripSlash(source_frame);
+  const std::string target(stripSlash(target_frame));
+  const std::string source(stripSlash(source_frame));
   for (const std::string& frame : {target, source}) {
     if (frame.empty() || frame.front() == '/') {
       return "'" + frame + "' is no frame: name the frame in header.frame_id.";

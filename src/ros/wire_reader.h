@@ -16,6 +16,12 @@
 
 namespace box_query {
 
+/// std_msgs/Header without its sequence number.
+struct WireHeader {
+  ros::Time stamp;
+  std::string_view frame;  ///< into the bytes, as it stands there
+};
+
 /// Reads the fields of a message in their order. Once something does not fit, ok() is false for
 /// good and everything reads as zero or empty, so that a decoder need look only once, at its end.
 /// Nothing is allocated here; views are into the bytes.
@@ -74,6 +80,12 @@ class WireReader {
   std::int64_t duration() {
     const std::int64_t seconds = number<std::int32_t>();
     return seconds * 1000000000 + number<std::int32_t>();
+  }
+
+  WireHeader header() {
+    skip(sizeof(std::uint32_t));  // seq
+    const ros::Time stamp = time();
+    return {stamp, string()};
   }
 
   Vector3 vector() {

@@ -21,7 +21,7 @@ BoxChange boxAt(double x, std::int64_t id = 1, const std::string& ns = "a") {
 BoxChange badBox(std::int64_t id = 1) {
   BoxChange change = boxAt(0.0, id);
   change.boxes.clear();
-  change.reject(Rejection::kNotFinite, 1, "its size");
+  change.reject(Rejection::kNotFinite, 1, "its size", change.id);
   return change;
 }
 

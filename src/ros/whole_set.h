@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Decoding of messages that carry the whole set of a topic's boxes.
+#pragma once
+
+#include "ros/box_source.h"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace box_query {
+
+/// Appends the boxes of such a message to its changes. The class of a box is its namespace, so that
+/// queries can choose by it, and its label. Boxes of one class, frame and stamp share a change:
+/// most messages have few of these. Where they alternate among many, some changes have fewer boxes.
+class WholeSet {
+ public:
+  /// Refuses a message that has more than `max_boxes`. `stamp` is that of the message.
+  WholeSet(std::uint32_t boxes, std::size_t max_boxes, const ros::Time& stamp,
+           DecodedMessage& message);
+
+  /// Checks a box and appends it, or rejects it.
+  void add(const WireHeader& header, std::string_view class_name, std::int64_t id,
+           const Vector3& center, const Quaternion& orientation, const Vector3& size);
+  /// The same for a box that is known to be bad.
+  void reject(const WireHeader& header, std::string_view class_name, std::int64_t id, Rejection why,
+              const std::string& detail);
+
+ private:
+  BoxChange& changeOf(const WireHeader& header, std::string_view class_name);
+
+  DecodedMessage& message_;
+  std::uint32_t boxes_;
+  std::map<std::string, std::int64_t, std::less<>> changes_of_;  ///< how many, by class
+};
+
+}  // namespace box_query
