@@ -73,6 +73,10 @@ const std::vector<BoxSource>& boxSources() {
       {"visualization_msgs/Marker", "4048c9de2a16f4ae8e0538085ebf1b97", decodeMarker},
       {"jsk_recognition_msgs/BoundingBoxArray", "c8f4a8bb1acd18ce778d183912bb472d",
        decodeJskBoundingBoxArray},
+      {"vision_msgs/BoundingBox3DArray", "9e1a3932308592aa1b20232d818486db",
+       decodeVisionBoundingBox3DArray},
+      {"vision_msgs/Detection3DArray", "05c51d9aea1fb4cfdc8effb94f197b6f",
+       decodeVisionDetection3DArray},
   };
   return sources;
 }

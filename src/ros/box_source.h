@@ -101,5 +101,9 @@ std::string tooManyBoxes(std::size_t max_boxes);
 void decodeMarker(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeMarkerArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeJskBoundingBoxArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
+void decodeVisionBoundingBox3DArray(WireReader& reader, std::size_t max_boxes,
+                                    DecodedMessage& message);
+void decodeVisionDetection3DArray(WireReader& reader, std::size_t max_boxes,
+                                  DecodedMessage& message);
 
 }  // namespace box_query

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <geometry_msgs/Pose.h>
+#include <geometry_msgs/PoseWithCovariance.h>
 #include <geometry_msgs/Vector3.h>
 #include <ros/serialization.h>
 #include <std_msgs/Header.h>
@@ -43,7 +44,62 @@ struct JskBoundingBoxArray {
   std::vector<JskBoundingBox> boxes;
 };
 
+struct PointField {
+  std::string name;
+  std::uint32_t offset = 0;
+  std::uint8_t datatype = 0;
+  std::uint32_t count = 0;
+};
+
+struct PointCloud2 {
+  std_msgs::Header header;
+  std::uint32_t height = 0;
+  std::uint32_t width = 0;
+  std::vector<PointField> fields;
+  std::uint8_t is_bigendian = 0;
+  std::uint32_t point_step = 0;
+  std::uint32_t row_step = 0;
+  std::vector<std::uint8_t> data;
+  std::uint8_t is_dense = 0;
+};
+
+struct VisionBoundingBox3D {
+  geometry_msgs::Pose center;
+  geometry_msgs::Vector3 size;
+};
+
+struct VisionBoundingBox3DArray {
+  std_msgs::Header header;
+  std::vector<VisionBoundingBox3D> boxes;
+};
+
+struct VisionHypothesis {
+  std::int64_t id = 0;
+  double score = 0;
+  geometry_msgs::PoseWithCovariance pose;
+};
+
+struct VisionDetection3D {
+  std_msgs::Header header;
+  std::vector<VisionHypothesis> results;
+  VisionBoundingBox3D bbox;
+  PointCloud2 source_cloud;
+};
+
+struct VisionDetection3DArray {
+  std_msgs::Header header;
+  std::vector<VisionDetection3D> detections;
+};
+
 }  // namespace box_query::test
 
+BQ_SERIALIZED(PointField, m.name, m.offset, m.datatype, m.count)
+BQ_SERIALIZED(PointCloud2, m.header, m.height, m.width, m.fields, m.is_bigendian, m.point_step,
+              m.row_step, m.data, m.is_dense)
+BQ_SERIALIZED(VisionBoundingBox3D, m.center, m.size)
+BQ_SERIALIZED(VisionBoundingBox3DArray, m.header, m.boxes)
+BQ_SERIALIZED(VisionHypothesis, m.id, m.score, m.pose)
+BQ_SERIALIZED(VisionDetection3D, m.header, m.results, m.bbox, m.source_cloud)
+BQ_SERIALIZED(VisionDetection3DArray, m.header, m.detections)
 BQ_SERIALIZED(JskBoundingBox, m.header, m.pose, m.dimensions, m.value, m.label)
 BQ_SERIALIZED(JskBoundingBoxArray, m.header, m.boxes)

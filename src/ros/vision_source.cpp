@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// vision_msgs/BoundingBox3DArray and Detection3DArray (0.0.2, ROS 1): whole sets, of boxes in their
+// order. The boxes of the former have no class. A detection's own header counts where it names a
+// frame; where it does not, as is common, the array's, which is the one that displays use. Its
+// class is the hypothesis with the highest score, by the number that the vision database of the
+// detector has for it; the poses of hypotheses are not those of the box.
+#include "ros/foreign_fields.h"
+#include "ros/whole_set.h"
+
+#include <limits>
+#include <string>
+
+namespace box_query {
+namespace {
+
+/// Bytes of a pose and a size, of a detection whose arrays and strings are empty, of a hypothesis.
+constexpr std::size_t kBoxSize = 80;
+constexpr std::size_t kDetectionSize = 142;
+constexpr std::size_t kHypothesisSize = 360;
+
+struct BoundingBox {
+  Vector3 center;
+  Quaternion orientation;
+  Vector3 size;
+};
+
+BoundingBox readBox(WireReader& reader) {
+  BoundingBox box;
+  box.center = reader.vector();
+  box.orientation = reader.quaternion();
+  box.size = reader.vector();
+  return box;
+}
+
+/// The class of the likeliest hypothesis, of equally likely ones the first; empty if there is none.
+/// A score that is not a number is below all others.
+std::string readClass(WireReader& reader) {
+  const std::uint32_t hypotheses = reader.count(kHypothesisSize);
+  std::int64_t likeliest = 0;
+  double best = -std::numeric_limits<double>::infinity();
+  for (std::uint32_t n = 0; n < hypotheses; ++n) {
+    const auto id = reader.number<std::int64_t>();
+    const auto score = reader.number<double>();
+    reader.skip(kHypothesisSize - sizeof(id) - sizeof(score));  // pose with covariance
+    if (n == 0 || score > best) {
+      likeliest = id;
+    }
+    best = score > best ? score : best;
+  }
+  return hypotheses > 0 ? std::to_string(likeliest) : "";
+}
+
+}  // namespace
+
+void decodeVisionBoundingBox3DArray(WireReader& reader, std::size_t max_boxes,
+                                    DecodedMessage& message) {
+  const WireHeader header = reader.header();
+  const std::uint32_t boxes = reader.count(kBoxSize);
+  WholeSet set(boxes, max_boxes, header.stamp, message);
+  for (std::uint32_t n = 0; n < boxes && message.problem.empty(); ++n) {
+    const BoundingBox box = readBox(reader);
+    set.add(header, "", n, box.center, box.orientation, box.size);
+  }
+}
+
+void decodeVisionDetection3DArray(WireReader& reader, std::size_t max_boxes,
+                                  DecodedMessage& message) {
+  const WireHeader array = reader.header();
+  const std::uint32_t detections = reader.count(kDetectionSize);
+  WholeSet set(detections, max_boxes, array.stamp, message);
+  for (std::uint32_t n = 0; n < detections && reader.ok() && message.problem.empty(); ++n) {
+    const WireHeader own = reader.header();
+    const std::string class_name = readClass(reader);
+    const BoundingBox box = readBox(reader);
+    skipPointCloud2(reader);
+    set.add(own.frame.empty() ? array : own, class_name, n, box.center, box.orientation, box.size);
+  }
+}
+
+}  // namespace box_query
