@@ -77,6 +77,8 @@ const std::vector<BoxSource>& boxSources() {
        decodeVisionBoundingBox3DArray},
       {"vision_msgs/Detection3DArray", "05c51d9aea1fb4cfdc8effb94f197b6f",
        decodeVisionDetection3DArray},
+      {"derived_object_msgs/ObjectArray", "492c83cd255b9a57845d0c197d7977be",
+       decodeDerivedObjectArray},
   };
   return sources;
 }

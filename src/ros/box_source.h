@@ -66,7 +66,7 @@ struct DecodedMessage {
   /// These boxes are all that the topic has: what it said before is gone.
   bool whole = false;
   ros::Time stamp;          ///< of a message without changes; 0: none
-  std::size_t ignored = 0;  ///< markers of a type that is no box
+  std::size_t ignored = 0;  ///< markers and objects that are no boxes
   std::string problem;      ///< not empty: the message is refused, and its changes mean nothing
 };
 
@@ -100,6 +100,7 @@ std::string tooManyBoxes(std::size_t max_boxes);
 // The decoders, each in its own file.
 void decodeMarker(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeMarkerArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
+void decodeDerivedObjectArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeJskBoundingBoxArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeVisionBoundingBox3DArray(WireReader& reader, std::size_t max_boxes,
                                     DecodedMessage& message);

@@ -14,6 +14,28 @@ inline void skipArray(WireReader& reader, std::size_t element_size) {
   reader.skip(std::uint64_t{reader.count(element_size)} * element_size);
 }
 
+/// shape_msgs/SolidPrimitive. All of its dimensions are read or skipped; those of a box are three.
+struct SolidPrimitive {
+  static constexpr std::uint8_t kBox = 1;
+  static constexpr std::size_t kSmallest = 5;  ///< bytes, without dimensions
+
+  std::uint8_t type = 0;
+  std::uint32_t dimensions = 0;
+  Vector3 sides = Vector3::Zero();  ///< full ones [m], of a box that has three
+};
+
+inline SolidPrimitive readSolidPrimitive(WireReader& reader) {
+  SolidPrimitive solid;
+  solid.type = reader.number<std::uint8_t>();
+  solid.dimensions = reader.count(sizeof(double));
+  if (solid.type == SolidPrimitive::kBox && solid.dimensions == 3) {
+    solid.sides = reader.vector();
+  } else {
+    reader.skip(std::uint64_t{solid.dimensions} * sizeof(double));
+  }
+  return solid;
+}
+
 /// sensor_msgs/PointCloud2
 inline void skipPointCloud2(WireReader& reader) {
   constexpr std::size_t kSmallestField = 13;

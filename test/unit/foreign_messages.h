@@ -8,8 +8,11 @@
 #include <string>
 #include <vector>
 
+#include <geometry_msgs/Accel.h>
+#include <geometry_msgs/Polygon.h>
 #include <geometry_msgs/Pose.h>
 #include <geometry_msgs/PoseWithCovariance.h>
+#include <geometry_msgs/Twist.h>
 #include <geometry_msgs/Vector3.h>
 #include <ros/serialization.h>
 #include <std_msgs/Header.h>
@@ -91,8 +94,38 @@ struct VisionDetection3DArray {
   std::vector<VisionDetection3D> detections;
 };
 
+struct SolidPrimitive {
+  std::uint8_t type = 0;
+  std::vector<double> dimensions;
+};
+
+struct DerivedObject {
+  std_msgs::Header header;
+  std::uint32_t id = 0;
+  std::uint8_t detection_level = 0;
+  std::uint8_t object_classified = 0;
+  geometry_msgs::Pose pose;
+  geometry_msgs::Twist twist;
+  geometry_msgs::Accel accel;
+  geometry_msgs::Polygon polygon;
+  SolidPrimitive shape;
+  std::uint8_t classification = 0;
+  std::uint8_t classification_certainty = 0;
+  std::uint32_t classification_age = 0;
+};
+
+struct DerivedObjectArray {
+  std_msgs::Header header;
+  std::vector<DerivedObject> objects;
+};
+
 }  // namespace box_query::test
 
+BQ_SERIALIZED(SolidPrimitive, m.type, m.dimensions)
+BQ_SERIALIZED(DerivedObject, m.header, m.id, m.detection_level, m.object_classified, m.pose,
+              m.twist, m.accel, m.polygon, m.shape, m.classification, m.classification_certainty,
+              m.classification_age)
+BQ_SERIALIZED(DerivedObjectArray, m.header, m.objects)
 BQ_SERIALIZED(PointField, m.name, m.offset, m.datatype, m.count)
 BQ_SERIALIZED(PointCloud2, m.header, m.height, m.width, m.fields, m.is_bigendian, m.point_step,
               m.row_step, m.data, m.is_dense)
