@@ -79,6 +79,8 @@ const std::vector<BoxSource>& boxSources() {
        decodeVisionDetection3DArray},
       {"derived_object_msgs/ObjectArray", "492c83cd255b9a57845d0c197d7977be",
        decodeDerivedObjectArray},
+      {"autoware_msgs/DetectedObjectArray", "c16aecef51c24c6808480a0295e47806",
+       decodeAutowareDetectedObjectArray},
   };
   return sources;
 }

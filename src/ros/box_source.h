@@ -100,6 +100,8 @@ std::string tooManyBoxes(std::size_t max_boxes);
 // The decoders, each in its own file.
 void decodeMarker(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeMarkerArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
+void decodeAutowareDetectedObjectArray(WireReader& reader, std::size_t max_boxes,
+                                       DecodedMessage& message);
 void decodeDerivedObjectArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeJskBoundingBoxArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeVisionBoundingBox3DArray(WireReader& reader, std::size_t max_boxes,

@@ -8,13 +8,15 @@
 #include <string>
 #include <vector>
 
+#include <boost/array.hpp>
 #include <geometry_msgs/Accel.h>
-#include <geometry_msgs/Polygon.h>
-#include <geometry_msgs/Pose.h>
+#include <geometry_msgs/PolygonStamped.h>
+#include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/PoseWithCovariance.h>
-#include <geometry_msgs/Twist.h>
+#include <geometry_msgs/TwistStamped.h>
 #include <geometry_msgs/Vector3.h>
 #include <ros/serialization.h>
+#include <std_msgs/ColorRGBA.h>
 #include <std_msgs/Header.h>
 
 /// A serialiser that roscpp uses for the fields named, in their order.
@@ -119,8 +121,90 @@ struct DerivedObjectArray {
   std::vector<DerivedObject> objects;
 };
 
+struct AutowareWaypoint {
+  std::int32_t gid = 0;
+  std::int32_t lid = 0;
+  geometry_msgs::PoseStamped pose;
+  geometry_msgs::TwistStamped twist;
+  boost::array<double, 8> dtlane{};
+  std::int32_t change_flag = 0;
+  std::int32_t aid = 0;
+  boost::array<std::uint8_t, 5> states{};
+  boost::array<std::uint32_t, 4> lanes{};
+  float cost = 0;
+  float time_cost = 0;
+  std::uint32_t direction = 0;
+};
+
+struct AutowareLane {
+  std_msgs::Header header;
+  std::int32_t increment = 0;
+  std::int32_t lane_id = 0;
+  std::vector<AutowareWaypoint> waypoints;
+  std::uint32_t lane_index = 0;
+  float cost = 0;
+  float closest_object_distance = 0;
+  float closest_object_velocity = 0;
+  std::uint8_t is_blocked = 0;
+};
+
+struct Image {
+  std_msgs::Header header;
+  std::uint32_t height = 0;
+  std::uint32_t width = 0;
+  std::string encoding;
+  std::uint8_t is_bigendian = 0;
+  std::uint32_t step = 0;
+  std::vector<std::uint8_t> data;
+};
+
+struct AutowareObject {
+  std_msgs::Header header;
+  std::uint32_t id = 0;
+  std::string label;
+  float score = 0;
+  std_msgs::ColorRGBA color;
+  std::uint8_t valid = 0;
+  std::string space_frame;
+  geometry_msgs::Pose pose;
+  geometry_msgs::Vector3 dimensions;
+  geometry_msgs::Vector3 variance;
+  geometry_msgs::Twist velocity;
+  geometry_msgs::Twist acceleration;
+  PointCloud2 pointcloud;
+  geometry_msgs::PolygonStamped convex_hull;
+  std::int32_t lanes_id = 0;
+  std::vector<AutowareLane> lanes;
+  std::uint8_t pose_reliable = 0;
+  std::uint8_t velocity_reliable = 0;
+  std::uint8_t acceleration_reliable = 0;
+  std::string image_frame;
+  boost::array<std::int32_t, 4> rectangle{};
+  float angle = 0;
+  Image roi_image;
+  std::uint8_t indicator_state = 0;
+  std::uint8_t behavior_state = 0;
+  std::vector<std::string> user_defined_info;
+};
+
+struct AutowareObjectArray {
+  std_msgs::Header header;
+  std::vector<AutowareObject> objects;
+};
+
 }  // namespace box_query::test
 
+BQ_SERIALIZED(AutowareWaypoint, m.gid, m.lid, m.pose, m.twist, m.dtlane, m.change_flag, m.aid,
+              m.states, m.lanes, m.cost, m.time_cost, m.direction)
+BQ_SERIALIZED(AutowareLane, m.header, m.increment, m.lane_id, m.waypoints, m.lane_index, m.cost,
+              m.closest_object_distance, m.closest_object_velocity, m.is_blocked)
+BQ_SERIALIZED(Image, m.header, m.height, m.width, m.encoding, m.is_bigendian, m.step, m.data)
+BQ_SERIALIZED(AutowareObject, m.header, m.id, m.label, m.score, m.color, m.valid, m.space_frame,
+              m.pose, m.dimensions, m.variance, m.velocity, m.acceleration, m.pointcloud,
+              m.convex_hull, m.lanes_id, m.lanes, m.pose_reliable, m.velocity_reliable,
+              m.acceleration_reliable, m.image_frame, m.rectangle, m.angle, m.roi_image,
+              m.indicator_state, m.behavior_state, m.user_defined_info)
+BQ_SERIALIZED(AutowareObjectArray, m.header, m.objects)
 BQ_SERIALIZED(SolidPrimitive, m.type, m.dimensions)
 BQ_SERIALIZED(DerivedObject, m.header, m.id, m.detection_level, m.object_classified, m.pose,
               m.twist, m.accel, m.polygon, m.shape, m.classification, m.classification_certainty,
