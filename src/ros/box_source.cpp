@@ -81,6 +81,7 @@ const std::vector<BoxSource>& boxSources() {
        decodeDerivedObjectArray},
       {"autoware_msgs/DetectedObjectArray", "c16aecef51c24c6808480a0295e47806",
        decodeAutowareDetectedObjectArray},
+      {"moveit_msgs/CollisionObject", "dbba710596087da521c07564160dfccb", decodeCollisionObject},
   };
   return sources;
 }

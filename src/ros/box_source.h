@@ -35,11 +35,14 @@ using IdentifiedBoxes = boost::container::small_vector<IdentifiedBox, 1>;
 struct BoxChange {
   enum class Kind {
     kSet,     ///< from now on these boxes, and no others
+    kAppend,  ///< these boxes beside those under its ns: `id` is set, and is added to theirs times
+              ///< 2^32, when it is heard
     kRemove,  ///< nothing
     kClear,   ///< nothing under any (ns, id) of the topic
   };
 
   Kind kind = Kind::kSet;
+  bool whole_namespace = false;  ///< kSet, kRemove: and nothing under another id of its ns
   std::string ns;
   std::int64_t id = 0;
   std::string label;
@@ -102,6 +105,7 @@ void decodeMarker(WireReader& reader, std::size_t max_boxes, DecodedMessage& mes
 void decodeMarkerArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeAutowareDetectedObjectArray(WireReader& reader, std::size_t max_boxes,
                                        DecodedMessage& message);
+void decodeCollisionObject(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeDerivedObjectArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeJskBoundingBoxArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeVisionBoundingBox3DArray(WireReader& reader, std::size_t max_boxes,

@@ -115,18 +115,37 @@ void BoxStore::clear(std::size_t topic_index) {
 
 void BoxStore::forgetBefore(std::size_t topic_index, std::uint64_t word) {
   Topic& topic = topics_.at(topic_index);
-  last_item_ = nullptr;
   for (auto items = topic.items.begin(); items != topic.items.end();) {
-    for (auto next = items->second.begin(); next != items->second.end();) {
-      if (next->second.latest_word <= word) {
-        forget(topic, next->second);
-        next = items->second.erase(next);
-      } else {
-        ++next;
-      }
-    }
-    items = items->second.empty() ? topic.items.erase(items) : std::next(items);
+    items = forgetBefore(topic, items, word);
   }
+}
+
+void BoxStore::forgetBefore(std::size_t topic_index, const std::string& ns, std::uint64_t word) {
+  Topic& topic = topics_.at(topic_index);
+  const auto items = topic.items.find(ns);
+  if (items != topic.items.end()) {
+    forgetBefore(topic, items, word);
+  }
+}
+
+BoxStore::Items::iterator BoxStore::forgetBefore(Topic& topic, Items::iterator items,
+                                                 std::uint64_t word) {
+  last_item_ = nullptr;
+  for (auto next = items->second.begin(); next != items->second.end();) {
+    if (next->second.latest_word <= word) {
+      forget(topic, next->second);
+      next = items->second.erase(next);
+    } else {
+      ++next;
+    }
+  }
+  return items->second.empty() ? topic.items.erase(items) : std::next(items);
+}
+
+std::int64_t BoxStore::nextId(std::size_t topic, const std::string& ns) const {
+  const Items& items = topics_.at(topic).items;
+  const auto found = items.find(ns);
+  return found == items.end() ? 0 : found->second.rbegin()->first + 1;
 }
 
 std::size_t BoxStore::expire(const ros::Time& now) {

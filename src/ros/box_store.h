@@ -81,8 +81,12 @@ class BoxStore {
 
   void remove(std::size_t topic, const std::string& ns, std::int64_t id);
   void clear(std::size_t topic);
-  /// Forgets what the topic has not said again since that word.
+  /// Forgets what the topic has not said again since that word: all of it, or that of one
+  /// namespace.
   void forgetBefore(std::size_t topic, std::uint64_t word);
+  void forgetBefore(std::size_t topic, const std::string& ns, std::uint64_t word);
+  /// An id above all others of the namespace; 0 if it has none.
+  std::int64_t nextId(std::size_t topic, const std::string& ns) const;
   /// Words that are heard from now on have higher numbers.
   std::uint64_t lastWord() const { return last_word_; }
 
@@ -112,6 +116,7 @@ class BoxStore {
   Item& itemOf(const Word& word);
   static void setMissing(Topic& topic, Item& item, std::size_t waiting, std::size_t rejected);
   void forget(Topic& topic, Item& item);
+  Items::iterator forgetBefore(Topic& topic, Items::iterator items, std::uint64_t word);
 
   std::vector<Topic> topics_;
   std::uint64_t last_word_ = 0;

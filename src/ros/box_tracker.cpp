@@ -35,6 +35,14 @@ std::string describe(const WaitingList::Place& place, const std::string& fixed_f
   return text.str();
 }
 
+/// Gives what is appended its identity, and its boxes theirs.
+void number(BoxChange& change, std::int64_t id) {
+  change.id = id;
+  for (IdentifiedBox& box : change.boxes) {
+    box.id += id * (std::int64_t{1} << 32);
+  }
+}
+
 WaitingList::Place placeOf(const BoxChange& change) {
   return {change.frame, change.frame_locked ? ros::Time() : change.stamp};
 }
@@ -102,9 +110,16 @@ void BoxTracker::apply(std::size_t topic, BoxChange&& change, bool whole, const 
     store_.clear(topic);
     noteStamp(change.stamp, now);
   } else if (change.kind == BoxChange::Kind::kRemove) {
-    store_.remove(topic, change.ns, change.id);
+    if (change.whole_namespace) {
+      store_.forgetBefore(topic, change.ns, store_.lastWord());
+    } else {
+      store_.remove(topic, change.ns, change.id);
+    }
     noteStamp(change.stamp, now);
   } else {
+    if (change.kind == BoxChange::Kind::kAppend) {
+      number(change, store_.nextId(topic, change.ns));
+    }
     const std::size_t rejected = change.rejected();
     counts_.boxes += change.boxes.size() + rejected;
     counts_.rejected_boxes += rejected;
@@ -116,6 +131,9 @@ void BoxTracker::apply(std::size_t topic, BoxChange&& change, bool whole, const 
     Word word = store_.hear(topic, std::move(change), now);
     // A marker that is bad leaves what it said before in place; a whole set does not.
     if (!word.change.boxes.empty() || rejected == 0 || whole) {
+      if (word.change.kind == BoxChange::Kind::kSet && word.change.whole_namespace) {
+        store_.forgetBefore(topic, word.change.ns, word.number - 1);
+      }
       place(std::move(word));
     }
   }

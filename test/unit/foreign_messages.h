@@ -192,8 +192,44 @@ struct AutowareObjectArray {
   std::vector<AutowareObject> objects;
 };
 
+struct MeshTriangle {
+  boost::array<std::uint32_t, 3> vertex_indices{};
+};
+
+struct Plane {
+  boost::array<double, 4> coef{};
+};
+
+struct Mesh {
+  std::vector<MeshTriangle> triangles;
+  std::vector<geometry_msgs::Point> vertices;
+};
+
+struct CollisionObject {
+  std_msgs::Header header;
+  geometry_msgs::Pose pose;
+  std::string id;
+  std::string type_key;
+  std::string type_db;
+  std::vector<SolidPrimitive> primitives;
+  std::vector<geometry_msgs::Pose> primitive_poses;
+  std::vector<Mesh> meshes;
+  std::vector<geometry_msgs::Pose> mesh_poses;
+  std::vector<Plane> planes;
+  std::vector<geometry_msgs::Pose> plane_poses;
+  std::vector<std::string> subframe_names;
+  std::vector<geometry_msgs::Pose> subframe_poses;
+  std::int8_t operation = 0;
+};
+
 }  // namespace box_query::test
 
+BQ_SERIALIZED(MeshTriangle, m.vertex_indices)
+BQ_SERIALIZED(Plane, m.coef)
+BQ_SERIALIZED(Mesh, m.triangles, m.vertices)
+BQ_SERIALIZED(CollisionObject, m.header, m.pose, m.id, m.type_key, m.type_db, m.primitives,
+              m.primitive_poses, m.meshes, m.mesh_poses, m.planes, m.plane_poses, m.subframe_names,
+              m.subframe_poses, m.operation)
 BQ_SERIALIZED(AutowareWaypoint, m.gid, m.lid, m.pose, m.twist, m.dtlane, m.change_flag, m.aid,
               m.states, m.lanes, m.cost, m.time_cost, m.direction)
 BQ_SERIALIZED(AutowareLane, m.header, m.increment, m.lane_id, m.waypoints, m.lane_index, m.cost,

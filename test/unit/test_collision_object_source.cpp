@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ros/box_tracker.h"
+#include "unit/foreign_messages.h"
+#include "unit/source_fixture.h"
+
+#include <cmath>
+#include <variant>
+
+namespace box_query::test {
+namespace {
+
+constexpr const char* kType = "moveit_msgs/CollisionObject";
+enum Operation : std::int8_t { kAdd, kRemove, kAppend, kMove };
+
+SolidPrimitive solid(std::uint8_t type, const std::vector<double>& dimensions) {
+  SolidPrimitive primitive;
+  primitive.type = type;
+  primitive.dimensions = dimensions;
+  return primitive;
+}
+
+geometry_msgs::Pose poseAt(double x, double yaw = 0.0) {
+  geometry_msgs::Pose pose;
+  pose.position.x = x;
+  pose.orientation.z = std::sin(yaw / 2);
+  pose.orientation.w = std::cos(yaw / 2);
+  return pose;
+}
+
+/// Boxes at the places given, in the frame of the object.
+CollisionObject object(const std::string& id, const std::vector<double>& places,
+                       Operation operation = kAdd) {
+  CollisionObject message;
+  message.header.frame_id = "/map";
+  message.header.stamp = ros::Time(1234, 5678);
+  message.id = id;
+  message.type_key = "furniture";
+  message.type_db = "shop";
+  message.pose = poseAt(0.0);
+  for (const double x : places) {
+    message.primitives.push_back(solid(1, {1.0, 0.0, 3.0}));
+    message.primitive_poses.push_back(poseAt(x));
+  }
+  message.operation = operation;
+  return message;
+}
+
+DecodedMessage decode(const CollisionObject& message, std::size_t max_boxes = kPlenty) {
+  return decodeBytes(kType, wire(message), max_boxes);
+}
+
+TEST(CollisionObjectSource, DecodesEveryFieldOfAnObject) {
+  const DecodedMessage message = decode(object("shelf", {0.1, 0.2}));
+  ASSERT_EQ(message.problem, "");
+  EXPECT_FALSE(message.whole);
+  ASSERT_EQ(message.changes.size(), 1U);
+  const BoxChange& change = message.changes[0];
+  EXPECT_EQ(change.kind, BoxChange::Kind::kSet);
+  EXPECT_TRUE(change.whole_namespace);
+  EXPECT_EQ(change.ns, "shelf");
+  EXPECT_EQ(change.id, 0);
+  EXPECT_EQ(change.label, "furniture");
+  EXPECT_EQ(change.frame, "map");
+  EXPECT_EQ(change.stamp, ros::Time(1234, 5678));
+  EXPECT_EQ(change.lifetime, 0);
+  ASSERT_EQ(change.boxes.size(), 2U);
+  EXPECT_EQ(change.boxes[0].id, 0);
+  EXPECT_EQ(change.boxes[1].id, 1);
+  EXPECT_EQ(change.boxes[1].box.center, Vector3(0.2, 0.0, 0.0));
+  EXPECT_EQ(change.boxes[1].box.half_extents, Vector3(0.5, 0.0, 1.5));
+}
+
+TEST(CollisionObjectSource, PlacesPrimitivesByThePoseOfTheObject) {
+  CollisionObject turned = object("shelf", {2.0});
+  turned.primitive_poses[0] = poseAt(2.0, M_PI / 2);
+  turned.pose = poseAt(10.0, M_PI / 2);
+  const DecodedMessage message = decode(turned);
+  ASSERT_EQ(message.changes.at(0).boxes.size(), 1U);
+  const OrientedBox& box = message.changes[0].boxes[0].box;
+  EXPECT_TRUE(box.center.isApprox(Vector3(10.0, 2.0, 0.0), 1e-15));
+  EXPECT_NEAR(std::abs(box.orientation.z()), 1.0, 1e-15) << "two quarter turns";
+}
+
+TEST(CollisionObjectSource, TakesPosesThatAreNotGivenAsTheIdentity) {
+  CollisionObject bare = object("shelf", {1.0 / 3.0, 7.0});
+  bare.pose = geometry_msgs::Pose();
+  bare.primitive_poses[0].orientation = geometry_msgs::Quaternion();
+  bare.primitive_poses.pop_back();
+  const DecodedMessage message = decode(bare);
+  ASSERT_EQ(message.changes.at(0).boxes.size(), 2U);
+  EXPECT_EQ(message.changes[0].boxes[0].box.center, Vector3(1.0 / 3.0, 0.0, 0.0));
+  EXPECT_EQ(message.changes[0].boxes[1].box.center, Vector3::Zero());
+  for (const IdentifiedBox& each : message.changes[0].boxes) {
+    EXPECT_EQ(each.box.orientation.coeffs(), Quaternion::Identity().coeffs());
+  }
+}
+
+TEST(CollisionObjectSource, CountsOtherShapesAndKeepsTheBoxesNumbers) {
+  CollisionObject mixed = object("shelf", {1.0, 2.0});
+  mixed.primitives[0] = solid(3, {1.0, 2.0});  // a cylinder
+  mixed.meshes.resize(2);
+  mixed.meshes[0].triangles.resize(3);
+  mixed.meshes[0].vertices.resize(4);
+  mixed.mesh_poses.resize(2);
+  mixed.planes.resize(1);
+  mixed.plane_poses.resize(1);
+  mixed.subframe_names = {"handle", ""};
+  mixed.subframe_poses.resize(2);
+  const DecodedMessage message = decode(mixed);
+  EXPECT_EQ(message.ignored, 4U);
+  EXPECT_EQ(contents(message), "shelf/1:2 ");
+  mixed.operation = kRemove;
+  EXPECT_EQ(decode(mixed).ignored, 0U);
+}
+
+TEST(CollisionObjectSource, TellsOperationsApart) {
+  EXPECT_EQ(decode(object("shelf", {1}, kAppend)).changes.at(0).kind, BoxChange::Kind::kAppend);
+  EXPECT_EQ(decode(object("shelf", {}, kRemove)).changes.at(0).kind, BoxChange::Kind::kRemove);
+  EXPECT_EQ(decode(object("", {}, kRemove)).changes.at(0).kind, BoxChange::Kind::kClear);
+  for (const Operation bad : {kMove, Operation(4), Operation(-1)}) {
+    const BoxChange change = decode(object("shelf", {1}, bad)).changes.at(0);
+    EXPECT_EQ(change.kind, BoxChange::Kind::kSet);
+    EXPECT_TRUE(change.boxes.empty());
+    EXPECT_EQ(countOf(change, Rejection::kAction), 1U);
+  }
+  const std::string problem = decode(object("shelf", {}, kMove)).changes.at(0).problem;
+  EXPECT_NE(problem.find("MOVE: add it again"), std::string::npos) << problem;
+}
+
+TEST(CollisionObjectSource, RejectsBadBoxesAndKeepsTheRest) {
+  CollisionObject bad = object("shelf", {1, 2, 3, 4, 5});
+  bad.primitives[0].dimensions.pop_back();
+  bad.primitives[1].dimensions[0] = -1.0;
+  bad.primitives[2].dimensions[0] = kInf;
+  bad.primitive_poses[3].orientation.w = 0.5;
+  const DecodedMessage message = decode(bad);
+  EXPECT_EQ(contents(message), "shelf/4:5 ");
+  EXPECT_EQ(countOf(message.changes.at(0), Rejection::kShape), 1U);
+  EXPECT_EQ(countOf(message.changes[0], Rejection::kNegativeSize), 1U);
+  EXPECT_EQ(countOf(message.changes[0], Rejection::kNotFinite), 1U);
+  EXPECT_EQ(countOf(message.changes[0], Rejection::kOrientation), 1U);
+  bad.pose.position.x = kNan;
+  EXPECT_EQ(contents(decode(bad)), "");
+  EXPECT_EQ(countOf(decode(object("shelf", {})).changes.at(0), Rejection::kShape), 1U);
+  CollisionObject nowhere = object("shelf", {1, 2});
+  nowhere.header.frame_id = "";
+  EXPECT_EQ(countOf(decode(nowhere).changes.at(0), Rejection::kFrame), 2U);
+  EXPECT_EQ(contents(decode(nowhere)), "");
+}
+
+TEST(CollisionObjectSource, RefusesMessagesWithTooManyBoxes) {
+  EXPECT_EQ(decode(object("shelf", {1, 2}), 2).problem, "");
+  const DecodedMessage message = decode(object("shelf", {1, 2}), 1);
+  EXPECT_TRUE(message.changes.empty());
+  EXPECT_NE(message.problem.find("max_boxes_per_message"), std::string::npos) << message.problem;
+}
+
+TEST(CollisionObjectSource, SurvivesDamage) {
+  CollisionObject full = object("shelf", {1, 2});
+  full.meshes.resize(2);
+  full.meshes[0].triangles.resize(1);
+  full.meshes[1].vertices.resize(1);
+  full.mesh_poses.resize(1);
+  full.planes.resize(1);
+  full.plane_poses.resize(1);
+  full.subframe_names = {"handle", ""};
+  full.subframe_poses.resize(1);
+  const Bytes whole = wire(full);
+  expectRefusedIfCutOffOrTooLong(kType, whole);
+  // Frame, stamp, id, type, primitives, meshes, planes, their poses, subframes.
+  expectClaimsRefused(kType, whole, 1 + 1 + 1 + 2 + 3 + 1 + 5 + 1 + 2 + 3 + 1);
+  expectSurvivesAnyBytes(kType, whole);
+}
+
+/// "ns/id:x" of every box that a tracker has after these messages, in the order of snapshots.
+std::string after(const std::vector<CollisionObject>& messages) {
+  Parameters parameters;
+  parameters.box_topics = {TopicParameters()};
+  const tf2::BufferCore tf;
+  BoxTracker tracker(parameters, tf);
+  for (const CollisionObject& message : messages) {
+    tracker.receive(0, &sourceNamed(kType), decode(message), ros::Time(100));
+  }
+  const Draft draft = tracker.draft();
+  std::string text;
+  for (std::size_t i = 0; i < draft.boxes.size(); ++i) {
+    const BoxName& name = draft.snapshot.names[i];
+    text += name.ns + "/" + std::to_string(name.id) + ":" +
+            std::to_string(std::lround(std::get<OrientedBox>(draft.boxes[i]).center.x())) + " ";
+  }
+  const std::size_t rejected = draft.snapshot.topics.at(0).rejected;
+  return text + (rejected > 0 ? "rejected " + std::to_string(rejected) : "");
+}
+
+TEST(CollisionObjects, AreReplacedAppendedAndRemovedOneByOne) {
+  const CollisionObject shelf = object("shelf", {1, 2});
+  const CollisionObject table = object("table", {5});
+  const CollisionObject more = object("shelf", {3, 4}, kAppend);
+  EXPECT_EQ(after({shelf, table}), "shelf/0:1 shelf/1:2 table/0:5 ");
+  EXPECT_EQ(after({shelf, table, more, more}),
+            "shelf/0:1 shelf/1:2 shelf/4294967296:3 shelf/4294967297:4 shelf/8589934592:3 "
+            "shelf/8589934593:4 table/0:5 ");
+  EXPECT_EQ(after({more}), "shelf/0:3 shelf/1:4 ") << "what is appended to nothing is added";
+  EXPECT_EQ(after({shelf, table, more, object("shelf", {7})}), "shelf/0:7 table/0:5 ");
+  EXPECT_EQ(after({shelf, table, more, object("shelf", {}, kRemove)}), "table/0:5 ");
+  EXPECT_EQ(after({shelf, table, more, object("", {}, kRemove)}), "");
+}
+
+TEST(CollisionObjects, StayAsTheyWereIfAChangeIsRejected) {
+  const CollisionObject shelf = object("shelf", {1, 2});
+  const CollisionObject more = object("shelf", {3}, kAppend);
+  const CollisionObject move = object("shelf", {}, kMove);
+  EXPECT_EQ(after({shelf, more, move}), "shelf/0:1 shelf/1:2 shelf/4294967296:3 rejected 1");
+  EXPECT_EQ(after({shelf, more, move, shelf}), "shelf/0:1 shelf/1:2 ");
+}
+
+}  // namespace
+}  // namespace box_query::test
