@@ -76,12 +76,16 @@ Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noe
 
 ClosestBox Scene::castClosest(const Ray& ray, double max_range,
                               const BoxMask* mask) const noexcept {
-  FirstEntered<Ray> first(ray, impl_->simplest, impl_->prepared);
   kernels::Found found;
   Vector3 direction;
+  bool too_many = false;
+  const auto give_up = [](void* context, const kernels::Found&) {
+    *static_cast<bool*>(context) = true;
+    return -kInf;
+  };
   const bool taken = impl_->kernels.closest(impl_->view, rayQuery(ray, max_range, mask, direction),
-                                            found, FirstEntered<Ray>::take, &first);
-  if (taken && impl_->tree.left_out().empty() && !first.any()) {
+                                            found, give_up, &too_many);
+  if (taken && !too_many && impl_->tree.left_out().empty()) {
     // As a rule the kernel has decided everything.
     const kernels::Candidate& c = found.candidates[0];
     if (found.count == 0) {
@@ -91,8 +95,18 @@ ClosestBox Scene::castClosest(const Ray& ray, double max_range,
       return {true, c.box, c.enter_lo, c.enter_hi};
     }
   }
-  first.offer(found);
-  impl_->offerOthers(first, taken, max_range, mask);
+  return impl_->closestOf(ray, max_range, mask, taken && !too_many ? &found : nullptr);
+}
+
+ClosestBox Scene::Impl::closestOf(const Ray& ray, double max_range, const BoxMask* mask,
+                                  const kernels::Found* found) const {
+  FirstEntered<Ray> first(ray, simplest, prepared);
+  if (found != nullptr) {
+    first.offer(*found);
+    offerOthers(first, true, max_range, mask);
+  } else {
+    findFirst(first, max_range, mask);
+  }
   if (!first.any()) {
     return {};
   }
@@ -101,7 +115,7 @@ ClosestBox Scene::castClosest(const Ray& ray, double max_range,
           [&](const auto& box) {
             return isEnteredWithin(ray, box, first.solution(), max_range, directionLength(ray));
           },
-          impl_->simplest[first.box()])) {
+          simplest[first.box()])) {
     return {};
   }
   return {true, first.box(), first.lower(), first.upper()};

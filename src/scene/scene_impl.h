@@ -22,6 +22,11 @@ struct Scene::Impl {
   /// firstBlockage() for radius 0.
   Blockage firstMet(const Segment& segment, const BoxMask* mask) const;
 
+  /// castClosest() where more is needed than what the kernel says.
+  /// @param found all candidates, or null if they are still to be found
+  ClosestBox closestOf(const Ray& ray, double max_range, const BoxMask* mask,
+                       const kernels::Found* found) const;
+
   /// Offers all boxes that may be the first, but for those that are certainly entered beyond
   /// `max_range` metres.
   template <typename T>

@@ -61,7 +61,10 @@ struct ClosestVisit {
     int kept = 0;
     for (int i = 0; i < found.count; ++i) {
       if (found.candidates[i].enter_lo <= bound) {
-        found.candidates[kept++] = found.candidates[i];
+        if (kept != i) {
+          found.candidates[kept] = found.candidates[i];
+        }
+        ++kept;
       }
     }
     found.count = kept;
