@@ -31,6 +31,7 @@ namespace avx2 {
 #include "kernels/generic/lanes_avx2.h"
 #include "kernels/generic/ray.h"
 #include "kernels/generic/box_times.h"
+#include "kernels/generic/blocks.h"
 #include "kernels/generic/traverse.h"
 #include "kernels/generic/ray_queries.h"
 #include "kernels/generic/nearest.h"

@@ -13,6 +13,9 @@ constexpr double kFarther = 1.0 + 0x1p-20;
 /// How far the planes of an axis are moved apart along which a ray hardly goes, times its end: more
 /// than 2.
 constexpr double kFlat = 2.1;
+/// Rays against whole boxes: how far their planes are moved outward, relative to |P - M|_1 of the
+/// ray, and to |C - M|_1 + |e|_1 of the box, M the center of the scene: 19u. See generic/blocks.h.
+constexpr double kBlock = 0x1p-19;
 /// Numbers that are rounded to float upward by it.
 constexpr double kUp = 1.0 + 0x1p-20;
 /// More than what is lost where floats underflow.

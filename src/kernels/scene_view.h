@@ -32,6 +32,21 @@ struct alignas(64) BoxRecord {
   bool isAligned() const { return extent[3] < 0.0; }
 };
 
+constexpr int kBlockSlots = 8;
+
+/// Eight boxes of a short list in float, relative to the center of the scene, all as oriented ones.
+/// An empty slot has extents of -inf.
+struct alignas(32) BoxBlock {
+  float axis[3][3][kBlockSlots];  ///< [axis of the box][coordinate][slot]
+  float center[3][kBlockSlots];
+  float extent[3][kBlockSlots];  ///< half extents, padded: see generic/blocks.h
+};
+
+/// Of what is compared with a block, origin and center and half extents: at most this far away.
+constexpr double kFarthestInBlocks = 0x1p40;
+/// The largest component of its direction, and its inverse: at most this.
+constexpr double kLongestInBlocks = 0x1p20;
+
 /// Nodes of one level: the children of node n are first[n], first[n] + 1, ... of the level below,
 /// of the lowest level records.
 struct Level {
@@ -44,6 +59,10 @@ struct SceneView {
   /// Level 0 is the lowest. All nodes of the last one are roots.
   Level levels[kMaxLevels];
   int depth;  ///< how many levels there are; 0: no box is in the tree
+  /// Of a list that is so short that its boxes are compared at once: slot i % kBlockSlots of block
+  /// i / kBlockSlots is record i. No blocks: it is not.
+  const BoxBlock* blocks;
+  std::uint32_t num_blocks;
   const BoxRecord* records;
   /// Number of the box in the scene.
   const std::uint32_t* box_of_record;
@@ -81,7 +100,7 @@ struct Candidate {
 
 /// What was not skipped.
 struct Work {
-  std::uint64_t nodes = 0;  ///< whose sixteen slots were compared
+  std::uint64_t nodes = 0;  ///< whose slots were compared, or blocks
   std::uint64_t boxes = 0;  ///< compared in double
 };
 

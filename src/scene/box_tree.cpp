@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/box_tree.h"
 
+#include "kernels/float_bounds.h"
 #include "scene/tree_partition.h"
 
 #include <algorithm>
@@ -16,6 +17,8 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr std::size_t kSlots = kernels::kSlots;
 /// Boxes that are best kept in one list.
 constexpr std::size_t kFlat = 128;
+/// Boxes that are sooner compared themselves than by their bounds: at most 64.
+constexpr std::size_t kInBlocks = 16;
 /// Roots are compared all: more of them save a level, for longer.
 constexpr std::size_t kMostRoots = 96;
 
@@ -82,6 +85,54 @@ kernels::BoxRecord recordOf(const PreparedBox& box) {
   }
   record.extent[3] = box.oriented.padded_extent_sum;
   return record;
+}
+
+/// Boxes in blocks; none if one of them is too far away, or too large.
+/// @pre every one is for the kernels
+std::vector<kernels::BoxBlock> blocksOf(const std::vector<kernels::BoxRecord>& records,
+                                        const double* scene_center) {
+  constexpr std::size_t kBlockSlots = kernels::kBlockSlots;
+  std::vector<kernels::BoxBlock> blocks((records.size() + kBlockSlots - 1) / kBlockSlots);
+  for (std::size_t k = 0; k < kBlockSlots * blocks.size(); ++k) {
+    kernels::BoxBlock& block = blocks[k / kBlockSlots];
+    const std::size_t slot = k % kBlockSlots;
+    if (k >= records.size()) {
+      for (int i = 0; i < 3; ++i) {
+        block.extent[i][slot] = -kInf;
+      }
+      continue;
+    }
+    const kernels::BoxRecord& box = records[k];
+    double extents[3];
+    double size = 0.0;
+    double pad = kernels::bounds::kFloatUnderflow;
+    for (int j = 0; j < 3; ++j) {
+      double middle = box.column[j][3];
+      extents[j] = box.extent[j];
+      for (int i = 0; i < 3; ++i) {
+        block.axis[i][j][slot] = static_cast<float>(box.column[j][i]);
+      }
+      if (box.isAligned()) {
+        middle = 0.5 * (box.column[0][j] + box.column[1][j]);
+        extents[j] = 0.5 * (box.column[1][j] - box.column[0][j]);
+        for (int i = 0; i < 3; ++i) {
+          block.axis[i][j][slot] = i == j ? 1.0F : 0.0F;
+        }
+        pad += 0x1p-50 * std::fabs(middle);  // it is rounded at its own size
+      }
+      const double relative = middle - scene_center[j];
+      block.center[j][slot] = static_cast<float>(relative);
+      size += std::fabs(relative) + extents[j];
+    }
+    if (!(size <= kernels::kFarthestInBlocks)) {
+      return {};
+    }
+    pad += kernels::bounds::kBlock * size;
+    for (int i = 0; i < 3; ++i) {
+      block.extent[i][slot] = static_cast<float>((extents[i] + pad) * kernels::bounds::kUp);
+    }
+  }
+  return blocks;
 }
 
 void setEmpty(kernels::Bounds& bounds) {
@@ -246,6 +297,9 @@ BoxTree::BoxTree(const std::vector<PreparedBox>& boxes) {
     has_aligned_ = has_aligned_ || records_.back().isAligned();
     box_of_record_.push_back(item.box);
   }
+  if (records_.size() <= kInBlocks) {
+    blocks_ = blocksOf(records_, center_);
+  }
 }
 
 kernels::SceneView BoxTree::view() const {
@@ -255,6 +309,8 @@ kernels::SceneView BoxTree::view() const {
     view.levels[i] = {levels_[i].bounds.data(), levels_[i].first.data(),
                       static_cast<std::uint32_t>(levels_[i].bounds.size())};
   }
+  view.blocks = blocks_.data();
+  view.num_blocks = static_cast<std::uint32_t>(blocks_.size());
   view.records = records_.data();
   view.box_of_record = box_of_record_.data();
   for (int i = 0; i < 3; ++i) {

@@ -13,7 +13,8 @@
 
 namespace box_query {
 
-/// A tree of sixteen children a node, all leaves at the same depth; up to 128 boxes are one list.
+/// A tree of sixteen children a node, all leaves at the same depth; up to 128 boxes are one list,
+/// and the first few of them are kept in blocks too.
 class BoxTree {
  public:
   BoxTree() = default;
@@ -34,6 +35,7 @@ class BoxTree {
   };
 
   std::vector<Nodes> levels_;
+  std::vector<kernels::BoxBlock> blocks_;
   std::vector<kernels::BoxRecord> records_;
   std::vector<std::uint32_t> box_of_record_;
   std::vector<std::uint32_t> left_out_;

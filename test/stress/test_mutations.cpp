@@ -127,6 +127,11 @@ TEST(Mutations, ShrunkBoundsOfRaysInFloatAreNoticed) {
   EXPECT_GT(wrongScenes("scene_near_ties", 800), 0U);
 }
 
+TEST(Mutations, ShrunkBoundsOfBoxesInFloatAreNoticed) {
+  const Spoilt<double> spoilt(float_bounds::kBlock, float_bounds::kBlock / 256);
+  EXPECT_GT(wrongScenes("scene_near_ties", 800), 0U);
+}
+
 TEST(Mutations, PlanesThatAreNotMovedApartForFlatRaysAreNoticed) {
   const Spoilt<double> spoilt(float_bounds::kFlat, 0.0);
   EXPECT_GT(wrongScenes("scene_lattice", 800), 0U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Four doubles and sixteen floats as arrays: what the compiler makes of them is up to it.
+// Four doubles, eight and sixteen floats as arrays: what the compiler makes of them is up to it.
 
 struct Double4 {
   double v[4];
@@ -126,63 +126,98 @@ static inline int lowestBit(std::uint32_t bits) {
   return __builtin_ctz(bits);
 }
 
-struct Float16 {
-  float v[kSlots];
-};
+/// Above 1 / sqrt(x), by less than 2^-9 of it.
+static inline float aboveInverseRoot(float x) {
+  return 1.0F / std::sqrt(x) * (1.0F + 0x1p-10F);
+}
 
-template <typename Function>
-static inline Float16 each16(Function&& f) {
-  Float16 result;
-  for (int i = 0; i < kSlots; ++i) {
+template <int kLanes>
+struct Floats {
+  float v[kLanes];
+};
+using Float16 = Floats<kSlots>;
+using Float8 = Floats<kBlockSlots>;
+
+template <int kLanes, typename Function>
+static inline Floats<kLanes> each(Function&& f) {
+  Floats<kLanes> result;
+  for (int i = 0; i < kLanes; ++i) {
     result.v[i] = f(i);
   }
   return result;
 }
 static inline Float16 load16(const float* p) {
-  return each16([&](int i) { return p[i]; });
+  return each<kSlots>([&](int i) { return p[i]; });
+}
+static inline Float8 load8(const float* p) {
+  return each<kBlockSlots>([&](int i) { return p[i]; });
 }
 static inline Float16 all16(float x) {
-  return each16([&](int) { return x; });
+  return each<kSlots>([&](int) { return x; });
+}
+static inline Float8 all8(float x) {
+  return each<kBlockSlots>([&](int) { return x; });
 }
 static inline void store16(float* p, const Float16& a) {
   for (int i = 0; i < kSlots; ++i) {
     p[i] = a.v[i];
   }
 }
+static inline void store8(float* p, const Float8& a) {
+  for (int i = 0; i < kBlockSlots; ++i) {
+    p[i] = a.v[i];
+  }
+}
 /// a * b + c, rounded once or twice.
-static inline Float16 multiplyAdd(const Float16& a, const Float16& b, const Float16& c) {
-  return each16([&](int i) { return a.v[i] * b.v[i] + c.v[i]; });
+template <int kLanes>
+static inline Floats<kLanes> multiplyAdd(const Floats<kLanes>& a, const Floats<kLanes>& b,
+                                         const Floats<kLanes>& c) {
+  return each<kLanes>([&](int i) { return a.v[i] * b.v[i] + c.v[i]; });
 }
-static inline Float16 operator*(const Float16& a, const Float16& b) {
-  return each16([&](int i) { return a.v[i] * b.v[i]; });
+template <int kLanes>
+static inline Floats<kLanes> operator*(const Floats<kLanes>& a, const Floats<kLanes>& b) {
+  return each<kLanes>([&](int i) { return a.v[i] * b.v[i]; });
 }
-static inline Float16 operator+(const Float16& a, const Float16& b) {
-  return each16([&](int i) { return a.v[i] + b.v[i]; });
+template <int kLanes>
+static inline Floats<kLanes> operator+(const Floats<kLanes>& a, const Floats<kLanes>& b) {
+  return each<kLanes>([&](int i) { return a.v[i] + b.v[i]; });
 }
-static inline Float16 operator-(const Float16& a, const Float16& b) {
-  return each16([&](int i) { return a.v[i] - b.v[i]; });
+template <int kLanes>
+static inline Floats<kLanes> operator-(const Floats<kLanes>& a, const Floats<kLanes>& b) {
+  return each<kLanes>([&](int i) { return a.v[i] - b.v[i]; });
 }
-static inline Float16 operator/(const Float16& a, const Float16& b) {
-  return each16([&](int i) { return a.v[i] / b.v[i]; });
+template <int kLanes>
+static inline Floats<kLanes> operator/(const Floats<kLanes>& a, const Floats<kLanes>& b) {
+  return each<kLanes>([&](int i) { return a.v[i] / b.v[i]; });
+}
+static inline Float8 magnitude(const Float8& a) {
+  return each<kBlockSlots>([&](int i) { return std::fabs(a.v[i]); });
+}
+/// a times -1 where b is negative.
+static inline Float8 withSignOf(const Float8& a, const Float8& b) {
+  return each<kBlockSlots>([&](int i) { return std::signbit(b.v[i]) ? -a.v[i] : a.v[i]; });
 }
 static inline Float16 squareRoot(const Float16& a) {
-  return each16([&](int i) { return std::sqrt(a.v[i]); });
+  return each<kSlots>([&](int i) { return std::sqrt(a.v[i]); });
 }
 /// a where b is not 0.
 static inline Float16 orZeroWhereZero(const Float16& a, const Float16& b) {
-  return each16([&](int i) { return b.v[i] != 0.0F ? a.v[i] : 0.0F; });
+  return each<kSlots>([&](int i) { return b.v[i] != 0.0F ? a.v[i] : 0.0F; });
 }
 /// (Of a NaN and b, b.)
-static inline Float16 larger(const Float16& a, const Float16& b) {
-  return each16([&](int i) { return a.v[i] > b.v[i] ? a.v[i] : b.v[i]; });
+template <int kLanes>
+static inline Floats<kLanes> larger(const Floats<kLanes>& a, const Floats<kLanes>& b) {
+  return each<kLanes>([&](int i) { return a.v[i] > b.v[i] ? a.v[i] : b.v[i]; });
 }
-static inline Float16 smaller(const Float16& a, const Float16& b) {
-  return each16([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; });
+template <int kLanes>
+static inline Floats<kLanes> smaller(const Floats<kLanes>& a, const Floats<kLanes>& b) {
+  return each<kLanes>([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; });
 }
 /// A bit for every lane in which a <= b.
-static inline std::uint32_t notAbove(const Float16& a, const Float16& b) {
+template <int kLanes>
+static inline std::uint32_t notAbove(const Floats<kLanes>& a, const Floats<kLanes>& b) {
   std::uint32_t bits = 0;
-  for (int i = 0; i < kSlots; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     bits |= (a.v[i] <= b.v[i] ? 1U : 0U) << i;
   }
   return bits;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Four doubles in an AVX register. Included in a target region.
+// Four doubles, or eight floats, in an AVX register. Included in a target region.
 
 struct Double4 {
   __m256d v;
@@ -132,4 +132,54 @@ static inline unsigned signs3(Double4 a) {
 }
 static inline int lowestBit(std::uint32_t bits) {
   return __builtin_ctz(bits);
+}
+
+/// Above 1 / sqrt(x), by less than 2^-9 of it.
+static inline float aboveInverseRoot(float x) {
+  return _mm_cvtss_f32(_mm_rsqrt_ss(_mm_set_ss(x))) * (1.0F + 0x1p-10F);
+}
+
+struct Float8 {
+  __m256 v;
+};
+
+static inline Float8 load8(const float* p) {
+  return {_mm256_load_ps(p)};
+}
+static inline Float8 all8(float x) {
+  return {_mm256_set1_ps(x)};
+}
+static inline void store8(float* p, Float8 a) {
+  _mm256_store_ps(p, a.v);
+}
+static inline Float8 multiplyAdd(Float8 a, Float8 b, Float8 c) {
+  return {_mm256_fmadd_ps(a.v, b.v, c.v)};
+}
+static inline Float8 operator+(Float8 a, Float8 b) {
+  return {_mm256_add_ps(a.v, b.v)};
+}
+static inline Float8 operator-(Float8 a, Float8 b) {
+  return {_mm256_sub_ps(a.v, b.v)};
+}
+static inline Float8 operator*(Float8 a, Float8 b) {
+  return {_mm256_mul_ps(a.v, b.v)};
+}
+static inline Float8 operator/(Float8 a, Float8 b) {
+  return {_mm256_div_ps(a.v, b.v)};
+}
+static inline Float8 magnitude(Float8 a) {
+  return {_mm256_andnot_ps(_mm256_set1_ps(-0.0F), a.v)};
+}
+/// a times -1 where b is negative.
+static inline Float8 withSignOf(Float8 a, Float8 b) {
+  return {_mm256_xor_ps(a.v, _mm256_and_ps(b.v, _mm256_set1_ps(-0.0F)))};
+}
+static inline Float8 larger(Float8 a, Float8 b) {
+  return {_mm256_max_ps(a.v, b.v)};
+}
+static inline Float8 smaller(Float8 a, Float8 b) {
+  return {_mm256_min_ps(a.v, b.v)};
+}
+static inline std::uint32_t notAbove(Float8 a, Float8 b) {
+  return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ)));
 }

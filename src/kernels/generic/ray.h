@@ -22,9 +22,14 @@ struct FloatRay {
   alignas(16) float inverse[4];
   alignas(16) float near_shift[4];
   alignas(16) float far_shift[4];
+  /// Instead of these, where the boxes are in blocks: see blocks.h.
+  bool for_blocks;
+  alignas(16) float origin[4];
+  alignas(16) float direction[4];
+  float pad;
   float begin_s;
   float end_s;
-  double scale;  ///< |d|_max: s = t * scale
+  double scale;  ///< |d|_max: s = t * scale; 1 for blocks
 
   void setRange(float from, float to) {
     begin_s = from;
@@ -52,6 +57,23 @@ struct Ray {
 static inline Double4 isBetween(Double4 size, double least, double most) {
   return isNotBelow(all4(most), size) &
          (isNotBelow(size, all4(least)) | isNotBelow(all4(0.0), size));
+}
+
+/// What a ray that is compared with blocks needs. Its end is rough: the root and the quotient that
+/// t_end is made of would be waited for.
+static inline void setForBlocks(Double4 relative, const RayQuery& query, double t_end,
+                                FloatRay& f) {
+  const Double4 reach = magnitude(relative);
+  const double size = (firstLane(reach) + firstLane(turned(reach))) + firstLane(turnedTwice(reach));
+  f.scale = 1.0;
+  f.pad = static_cast<float>(size * (bounds::kBlock * bounds::kUp) + bounds::kFloatUnderflow);
+  storeAsFloats(f.origin, relative);
+  storeAsFloats(f.direction, lanes4(query.direction));
+  if (query.max_range < std::numeric_limits<double>::infinity()) {
+    const auto square = [&](int i) { return f.direction[i] * f.direction[i]; };
+    t_end = query.max_range * aboveInverseRoot((square(0) + square(1)) + square(2));
+  }
+  f.setRange(0.0F, f.roundedUp(t_end));
 }
 
 /// Prepares a ray for the boxes of a scene.
@@ -86,7 +108,16 @@ static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray&
     const double* d = query.direction;
     const double t = query.max_range / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
     ray.t_end = t * exact::bounds::kInflate + exact::bounds::kUnderflow;
-    ray.t_inside = t / exact::bounds::kInflate - exact::bounds::kUnderflow;
+    // 1 - x is below 1 / (1 + x), and sooner there.
+    ray.t_inside = t * (2.0 - exact::bounds::kInflate) - exact::bounds::kUnderflow;
+  }
+
+  f.for_blocks = view.num_blocks > 0 && f.scale <= kLongestInBlocks &&
+                 f.scale >= 1.0 / kLongestInBlocks &&
+                 notBelow3(all4(kFarthestInBlocks), magnitude(relative)) == 7U;
+  if (f.for_blocks) {
+    setForBlocks(relative, query, ray.own_end, f);
+    return Outcome::kReady;
   }
 
   const Double4 is_flat = isNotBelow(scale, all4(kSteepest) * size);

@@ -61,38 +61,53 @@ bool descend(const SceneView& view, int level, const std::uint32_t* nodes, int c
   return visitListed();
 }
 
+/// Of a tree that is one list: all bounds, or all boxes in float, are compared before any in
+/// double.
 template <typename Visit>
-bool descend(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
-  const int top = view.depth - 1;
-  return descend(view, top, kRoots, static_cast<int>(view.levels[top].nodes), ray, work, visit);
-}
-
-/// Of a tree that is one list: all bounds are compared before any box is.
-template <typename Visit>
-void visitList(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
+bool visitList(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
   constexpr int kWords = 64 / kSlots;  // nodes a word
   constexpr int kLongest = 8;          // nodes of the longest list
   alignas(64) float nears[kLongest * kSlots];
   std::uint64_t words[kLongest / kWords] = {0, 0};
-  const Level& list = view.levels[0];
-  const auto count = static_cast<int>(list.nodes);
-  work.nodes += list.nodes;
-  for (int k = 0; k < count; ++k) {
-    Float16 near;
-    const std::uint64_t bits = meets(list.bounds[k], ray, near);
-    store16(nears + k * kSlots, near);
-    words[k / kWords] |= bits << (k % kWords * kSlots);
+  if (ray.for_blocks) {
+    work.nodes += view.num_blocks;
+    for (std::uint32_t k = 0; k < view.num_blocks; ++k) {
+      Float8 near;
+      const std::uint64_t bits = meets(view.blocks[k], ray, near);
+      store8(nears + k * kBlockSlots, near);
+      words[0] |= bits << (k * kBlockSlots);
+    }
+  } else {
+    const Level& list = view.levels[0];
+    const auto count = static_cast<int>(list.nodes);
+    work.nodes += list.nodes;
+    for (int k = 0; k < count; ++k) {
+      Float16 near;
+      const std::uint64_t bits = meets(list.bounds[k], ray, near);
+      store16(nears + k * kSlots, near);
+      words[k / kWords] |= bits << (k % kWords * kSlots);
+    }
   }
-  // Nodes of a list are full, but for the last: slot number and record are the same.
+  // Nodes of a list, and blocks, are full, but for the last: slot number and record are the same.
   for (int w = 0; w < kLongest / kWords; ++w) {
     for (std::uint64_t bits = words[w]; bits != 0; bits &= bits - 1) {
       const int record = 64 * w + __builtin_ctzll(bits);
       if (nears[record] <= ray.end_s * static_cast<float>(bounds::kFarther) &&
           !visit(static_cast<std::uint32_t>(record))) {
-        return;
+        return false;
       }
     }
   }
+  return true;
+}
+
+template <typename Visit>
+bool descend(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
+  if (view.depth == 1) {
+    return visitList(view, ray, work, visit);
+  }
+  const int top = view.depth - 1;
+  return descend(view, top, kRoots, static_cast<int>(view.levels[top].nodes), ray, work, visit);
 }
 
 /// Visits records from near to far, a stretch of the ray at a time, as long as visit.end() [s] lies
