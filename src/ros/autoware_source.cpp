@@ -64,9 +64,7 @@ void readObject(WireReader& reader, const WireHeader& array, WholeSet& set,
   reader.skip(5 * sizeof(float));  // score, color
   const bool valid = reader.number<std::uint8_t>() != 0;
   reader.string();  // space_frame
-  const Vector3 position = reader.vector();
-  Quaternion orientation = reader.quaternion();
-  const Vector3 dimensions = reader.vector();
+  WireBox box = reader.box();
   reader.skip(kVectorSize + 2 * kTwistSize);  // variance, velocity, acceleration
   skipPointCloud2(reader);
   reader.header();  // of convex_hull
@@ -83,10 +81,10 @@ void readObject(WireReader& reader, const WireHeader& array, WholeSet& set,
     ++message.ignored;
     return;
   }
-  if (!pose_reliable && orientation.coeffs() == Eigen::Vector4d::Zero()) {
-    orientation.setIdentity();
+  if (!pose_reliable && box.orientation.coeffs() == Eigen::Vector4d::Zero()) {
+    box.orientation.setIdentity();
   }
-  set.add(array.frame.empty() ? own : array, label, id, position, orientation, dimensions);
+  set.add(array.frame.empty() ? own : array, label, id, box.center, box.orientation, box.size);
 }
 
 }  // namespace

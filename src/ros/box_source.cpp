@@ -8,19 +8,10 @@
 namespace box_query {
 namespace {
 
-/// How far the norm of a quaternion may be from 1. Less is taken as it stands.
-constexpr double kNormTolerance = 1e-2;
-
 std::string print(double number) {
   std::ostringstream out;
   out << number;
   return out.str();
-}
-
-bool isNearUnit(const Quaternion& q) {
-  const double squared = q.squaredNorm();
-  return squared >= (1.0 - kNormTolerance) * (1.0 - kNormTolerance) &&
-         squared <= (1.0 + kNormTolerance) * (1.0 + kNormTolerance);
 }
 
 }  // namespace
@@ -50,8 +41,8 @@ void BoxChange::reject(Rejection why, std::size_t count, const std::string& deta
   rejections.at(reason) += static_cast<std::uint32_t>(count);
 }
 
-void BoxChange::add(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
-                    const Vector3& size) {
+void BoxChange::addHostile(std::int64_t box_id, const Vector3& center,
+                           const Quaternion& orientation, const Vector3& size) {
   if (!center.allFinite()) {
     reject(Rejection::kNotFinite, 1, "its position", box_id);
   } else if (!orientation.coeffs().allFinite()) {
@@ -63,7 +54,7 @@ void BoxChange::add(std::int64_t box_id, const Vector3& center, const Quaternion
   } else if (!isNearUnit(orientation)) {
     reject(Rejection::kOrientation, 1, "its norm is " + print(orientation.norm()), box_id);
   } else {
-    boxes.push_back({box_id, {center, orientation, 0.5 * size}});
+    boxes.emplace_back(box_id, center, orientation, 0.5 * size);
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,9 +26,22 @@ constexpr std::size_t kRejections = 6;
 const std::array<const char*, kRejections>& rejectionNames();
 
 struct IdentifiedBox {
+  IdentifiedBox(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
+                const Vector3& half_extents)
+      : id(box_id), box{center, orientation, half_extents} {}
+
   std::int64_t id;
   OrientedBox box;
 };
+/// How far the norm of a quaternion may be from 1. Less is taken as it stands.
+constexpr double kNormTolerance = 1e-2;
+
+inline bool isNearUnit(const Quaternion& q) {
+  const double squared = q.squaredNorm();
+  return squared >= (1.0 - kNormTolerance) * (1.0 - kNormTolerance) &&
+         squared <= (1.0 + kNormTolerance) * (1.0 + kNormTolerance);
+}
+
 /// Most markers are one box.
 using IdentifiedBoxes = boost::container::small_vector<IdentifiedBox, 1>;
 
@@ -40,6 +54,9 @@ struct BoxChange {
     kRemove,  ///< nothing
     kClear,   ///< nothing under any (ns, id) of the topic
   };
+
+  // Not defaulted: value-initialisation would fill the whole of it with zeros first.
+  BoxChange() {}  // NOLINT(modernize-use-equals-default)
 
   Kind kind = Kind::kSet;
   bool whole_namespace = false;  ///< kSet, kRemove: and nothing under another id of its ns
@@ -61,6 +78,11 @@ struct BoxChange {
   /// rejects it. A half is exact, but for sides below 2^-1021 m, where it is rounded to nearest.
   void add(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
            const Vector3& size);
+
+ private:
+  /// The same for a box that is bad, or close to the largest double.
+  void addHostile(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
+                  const Vector3& size);
 };
 
 /// What a message says.
@@ -72,6 +94,19 @@ struct DecodedMessage {
   std::size_t ignored = 0;  ///< markers and objects that are no boxes
   std::string problem;      ///< not empty: the message is refused, and its changes mean nothing
 };
+
+inline void BoxChange::add(std::int64_t box_id, const Vector3& center,
+                           const Quaternion& orientation, const Vector3& size) {
+  // Most boxes are good. A sum is finite only if everything in it is; one that overflows decides
+  // nothing.
+  const double sum = center.lpNorm<1>() + size.lpNorm<1>();
+  if (sum <= std::numeric_limits<double>::max() && size.x() >= 0.0 && size.y() >= 0.0 &&
+      size.z() >= 0.0 && isNearUnit(orientation)) {
+    boxes.emplace_back(box_id, center, orientation, 0.5 * size);
+  } else {
+    addHostile(box_id, center, orientation, size);
+  }
+}
 
 struct BoxSource {
   const char* type;

@@ -40,12 +40,10 @@ void decodeJskBoundingBoxArray(WireReader& reader, std::size_t max_boxes, Decode
   NumberText label;
   for (std::uint32_t n = 0; n < boxes && reader.ok() && message.problem.empty(); ++n) {
     const WireHeader header = reader.header();
-    const Vector3 position = reader.vector();
-    const Quaternion orientation = reader.quaternion();
-    const Vector3 dimensions = reader.vector();
+    const WireBox box = reader.box();
     reader.number<float>();  // value
     const auto number = reader.number<std::uint32_t>();
-    set.add(header, label.of(number), n, position, orientation, dimensions);
+    set.add(header, label.of(number), n, box.center, box.orientation, box.size);
   }
 }
 

@@ -26,33 +26,24 @@ std::int64_t boxId(std::int64_t marker_id, std::uint32_t n) {
 }
 
 /// What a marker says of all its boxes.
-struct Shape {
-  Vector3 position;
-  Quaternion orientation;
-  Vector3 scale;
-};
-
-Shape readShape(WireReader& reader) {
-  Shape shape;
-  shape.position = reader.vector();
-  shape.orientation = reader.quaternion();
+WireBox readShape(WireReader& reader) {
+  WireBox shape = reader.box();
   if (shape.orientation.coeffs() == Eigen::Vector4d::Zero()) {
     shape.orientation.setIdentity();
   }
-  shape.scale = reader.vector();
   return shape;
 }
 
 /// Points are placed by the marker's pose; every box has its orientation and scale. An identity
 /// pose leaves them as they are, to the last bit.
-void addPoints(WireReader& reader, std::uint32_t points, const Shape& shape, BoxChange& change) {
+void addPoints(WireReader& reader, std::uint32_t points, const WireBox& shape, BoxChange& change) {
   const bool rotated = shape.orientation.vec() != Vector3::Zero();
   const Eigen::Matrix3d rotation = shape.orientation.normalized().toRotationMatrix();
   change.boxes.reserve(points);
   for (std::uint32_t n = 0; n < points; ++n) {
     const Vector3 point = reader.vector();
     const Vector3 offset = rotated ? Vector3(rotation * point) : point;
-    change.add(boxId(change.id, n), shape.position + offset, shape.orientation, shape.scale);
+    change.add(boxId(change.id, n), shape.center + offset, shape.orientation, shape.size);
   }
 }
 
@@ -67,7 +58,7 @@ void readMarker(WireReader& reader, std::size_t max_boxes, std::size_t& boxes,
   change.id = reader.number<std::int32_t>();
   const auto type = reader.number<std::int32_t>();
   const auto action = reader.number<std::int32_t>();
-  const Shape shape = readShape(reader);
+  const WireBox shape = readShape(reader);
   reader.skip(kColorSize);
   const std::int64_t lifetime = reader.duration();
   change.frame_locked = reader.number<std::uint8_t>() != 0;
@@ -88,7 +79,7 @@ void readMarker(WireReader& reader, std::size_t max_boxes, std::size_t& boxes,
     reader.skip(std::uint64_t{points} * kPointSize);
   }
   if (adds && type == Marker::CUBE) {
-    change.add(change.id, shape.position, shape.orientation, shape.scale);
+    change.add(change.id, shape.center, shape.orientation, shape.size);
   }
   reader.skip(std::uint64_t{reader.count(kColorSize)} * kColorSize);
   change.label = reader.string();  // text

@@ -18,20 +18,6 @@ constexpr std::size_t kBoxSize = 80;
 constexpr std::size_t kDetectionSize = 142;
 constexpr std::size_t kHypothesisSize = 360;
 
-struct BoundingBox {
-  Vector3 center;
-  Quaternion orientation;
-  Vector3 size;
-};
-
-BoundingBox readBox(WireReader& reader) {
-  BoundingBox box;
-  box.center = reader.vector();
-  box.orientation = reader.quaternion();
-  box.size = reader.vector();
-  return box;
-}
-
 /// The class of the likeliest hypothesis, of equally likely ones the first; empty if there is none.
 /// A score that is not a number is below all others.
 std::string readClass(WireReader& reader) {
@@ -57,9 +43,18 @@ void decodeVisionBoundingBox3DArray(WireReader& reader, std::size_t max_boxes,
   const WireHeader header = reader.header();
   const std::uint32_t boxes = reader.count(kBoxSize);
   WholeSet set(boxes, max_boxes, header.stamp, message);
-  for (std::uint32_t n = 0; n < boxes && message.problem.empty(); ++n) {
-    const BoundingBox box = readBox(reader);
-    set.add(header, "", n, box.center, box.orientation, box.size);
+  if (boxes == 0 || !message.problem.empty()) {
+    return;
+  }
+  BoxChange& change = set.changeOf(header, "");  // of all boxes
+  if (isBadFrame(change.frame)) {
+    change.reject(Rejection::kFrame, boxes, "'" + std::string(header.frame) + "'", 0);
+    reader.skip(std::uint64_t{boxes} * kBoxSize);
+    return;
+  }
+  for (std::uint32_t n = 0; n < boxes; ++n) {
+    const WireBox box = reader.box();
+    change.add(n, box.center, box.orientation, box.size);
   }
 }
 
@@ -71,7 +66,7 @@ void decodeVisionDetection3DArray(WireReader& reader, std::size_t max_boxes,
   for (std::uint32_t n = 0; n < detections && reader.ok() && message.problem.empty(); ++n) {
     const WireHeader own = reader.header();
     const std::string class_name = readClass(reader);
-    const BoundingBox box = readBox(reader);
+    const WireBox box = reader.box();
     skipPointCloud2(reader);
     set.add(own.frame.empty() ? array : own, class_name, n, box.center, box.orientation, box.size);
   }

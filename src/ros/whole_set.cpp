@@ -9,6 +9,26 @@ namespace {
 /// How many changes back one is looked for: bounds the time that a message of many classes takes.
 constexpr std::ptrdiff_t kRecentChanges = 8;
 
+using Changes = std::vector<BoxChange>;
+
+Changes::reverse_iterator oldestOf(Changes& changes) {
+  return changes.rend() -
+         std::max(std::ptrdiff_t{0}, changes.rend() - changes.rbegin() - kRecentChanges);
+}
+
+/// An id that no change of the class has. They are numbered within it, so that one replaces the
+/// like one of the message before even while it waits for its transform. No id is above the place
+/// of its change: where others of the class came long ago, the place is a new one.
+std::int64_t newId(Changes& changes, std::string_view class_name) {
+  const auto oldest = oldestOf(changes);
+  const auto last = std::find_if(changes.rbegin(), oldest,
+                                 [&](const BoxChange& change) { return change.ns == class_name; });
+  if (last != oldest) {
+    return last->id + 1;
+  }
+  return oldest == changes.rend() ? 0 : static_cast<std::int64_t>(changes.size());
+}
+
 }  // namespace
 
 WholeSet::WholeSet(std::uint32_t boxes, std::size_t max_boxes, const ros::Time& stamp,
@@ -37,25 +57,22 @@ void WholeSet::reject(const WireHeader& header, std::string_view class_name, std
 }
 
 BoxChange& WholeSet::changeOf(const WireHeader& header, std::string_view class_name) {
-  std::vector<BoxChange>& changes = message_.changes;
+  Changes& changes = message_.changes;
   const std::string_view frame = stripSlash(header.frame);
-  const auto oldest = changes.rend() - changes.rbegin() > kRecentChanges
-                          ? changes.rbegin() + kRecentChanges
-                          : changes.rend();
+  const auto oldest = oldestOf(changes);
   const auto found = std::find_if(changes.rbegin(), oldest, [&](const BoxChange& change) {
     return change.ns == class_name && change.stamp == header.stamp && change.frame == frame;
   });
   if (found != oldest) {
     return *found;
   }
+  const std::int64_t id = newId(changes, class_name);
   BoxChange& change = changes.emplace_back();
+  change.id = id;
   change.ns = class_name;
   change.label = class_name;
   change.frame = frame;
   change.stamp = header.stamp;
-  // Numbered within the class, so that it replaces the like one of the message before even while it
-  // waits for its transform.
-  change.id = changes_of_[change.ns]++;
   if (changes.size() == 1) {
     change.boxes.reserve(boxes_);
   }

@@ -6,8 +6,6 @@
 #include "ros/box_source.h"
 
 #include <cstdint>
-#include <functional>
-#include <map>
 #include <string>
 #include <string_view>
 
@@ -25,16 +23,15 @@ class WholeSet {
   /// Checks a box and appends it, or rejects it.
   void add(const WireHeader& header, std::string_view class_name, std::int64_t id,
            const Vector3& center, const Quaternion& orientation, const Vector3& size);
-  /// The same for a box that is known to be bad.
+  /// The change of the boxes of a header and class, until the next call of the same.
+  BoxChange& changeOf(const WireHeader& header, std::string_view class_name);
+  /// The same as add() for a box that is known to be bad.
   void reject(const WireHeader& header, std::string_view class_name, std::int64_t id, Rejection why,
               const std::string& detail);
 
  private:
-  BoxChange& changeOf(const WireHeader& header, std::string_view class_name);
-
   DecodedMessage& message_;
   std::uint32_t boxes_;
-  std::map<std::string, std::int64_t, std::less<>> changes_of_;  ///< how many, by class
 };
 
 }  // namespace box_query

@@ -22,6 +22,13 @@ struct WireHeader {
   std::string_view frame;  ///< into the bytes, as it stands there
 };
 
+/// geometry_msgs/Pose and, right after it, a geometry_msgs/Vector3 of full sides [m].
+struct WireBox {
+  Vector3 center;
+  Quaternion orientation;
+  Vector3 size;
+};
+
 /// Reads the fields of a message in their order. Once something does not fit, ok() is false for
 /// good and everything reads as zero or empty, so that a decoder need look only once, at its end.
 /// Nothing is allocated here; views are into the bytes.
@@ -93,6 +100,19 @@ class WireReader {
     return {xyz[0], xyz[1], xyz[2]};
   }
 
+  WireBox box() {
+    const std::uint8_t* bytes = take(10 * sizeof(double));
+    if (!bytes) {
+      return {Vector3::Zero(), {0.0, 0.0, 0.0, 0.0}, Vector3::Zero()};
+    }
+    const auto n = [bytes](std::size_t index) {
+      double value;
+      std::memcpy(&value, bytes + index * sizeof(value), sizeof(value));
+      return value;
+    };
+    return {{n(0), n(1), n(2)}, {n(6), n(3), n(4), n(5)}, {n(7), n(8), n(9)}};
+  }
+
   /// geometry_msgs/Quaternion: x, y, z, w.
   Quaternion quaternion() {
     const auto xyzw = numbers<4>();
@@ -111,7 +131,7 @@ class WireReader {
 
   const std::uint8_t* take(std::uint64_t size) {
     if (size > left_) {
-      fail("a field of " + std::to_string(size) + " bytes is expected");
+      failField(size);
       return nullptr;
     }
     const std::uint8_t* bytes = next_;
@@ -120,7 +140,12 @@ class WireReader {
     return bytes;
   }
 
-  void fail(const std::string& what) {
+  /// Out of line, so that what reads can be inlined.
+  [[gnu::noinline, gnu::cold]] void failField(std::uint64_t size) {
+    fail("a field of " + std::to_string(size) + " bytes is expected");
+  }
+
+  [[gnu::noinline, gnu::cold]] void fail(const std::string& what) {
     if (ok()) {
       failure_ = what + " at byte " + std::to_string(next_ - begin_) + ", where " +
                  std::to_string(left_) + " bytes remain";

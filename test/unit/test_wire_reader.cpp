@@ -24,7 +24,8 @@ std::vector<std::uint8_t> wire(const Values&... values) {
 TEST(WireReader, ReadsWhatRoscppWrites) {
   const auto bytes =
       wire(std::uint8_t{200}, std::int32_t{-5}, 1.5, std::string("name"), ros::Time(7, 999999999),
-           ros::Duration(-1, 5), 1.0, 2.0, 3.0, 0.1, 0.2, 0.3, 0.4);
+           ros::Duration(-1, 5), 1.0, 2.0, 3.0, 0.1, 0.2, 0.3, 0.4, std::uint32_t{9},
+           ros::Time(3, 4), std::string("map"), 1.0, 2.0, 3.0, 0.1, 0.2, 0.3, 0.4, 5.0, 6.0, 7.0);
   WireReader reader(bytes.data(), bytes.size());
   EXPECT_EQ(reader.number<std::uint8_t>(), 200);
   EXPECT_EQ(reader.number<std::int32_t>(), -5);
@@ -34,6 +35,13 @@ TEST(WireReader, ReadsWhatRoscppWrites) {
   EXPECT_EQ(reader.duration(), -999999995);
   EXPECT_EQ(reader.vector(), Vector3(1.0, 2.0, 3.0));
   EXPECT_EQ(reader.quaternion().coeffs(), Eigen::Vector4d(0.1, 0.2, 0.3, 0.4));
+  const WireHeader header = reader.header();
+  EXPECT_EQ(header.stamp, ros::Time(3, 4));
+  EXPECT_EQ(header.frame, "map");
+  const WireBox box = reader.box();
+  EXPECT_EQ(box.center, Vector3(1.0, 2.0, 3.0));
+  EXPECT_EQ(box.orientation.coeffs(), Eigen::Vector4d(0.1, 0.2, 0.3, 0.4));
+  EXPECT_EQ(box.size, Vector3(5.0, 6.0, 7.0));
   EXPECT_TRUE(reader.ok()) << reader.failure();
   EXPECT_EQ(reader.left(), 0U);
 }
