@@ -14,7 +14,7 @@ export PATH=/usr/bin:$PATH
 # Prints the packages of a group, by the names of Debian's own ROS or of packages.ros.org.
 bq_packages() {
   case $bq_ros/$1 in
-    */build) echo build-essential cmake libeigen3-dev libboost-dev ;;&
+    */build) echo build-essential cmake libeigen3-dev libboost-dev libtbb-dev ;;&
     */test) echo libgmp-dev libgtest-dev ;;&
     */benchmark) echo python3-matplotlib ;;
     */peers) echo libembree-dev ;;

@@ -3,6 +3,8 @@
 #include "ros/named_boxes.h"
 #include "ros/request_checks.h"
 
+#include <box_query/batch.h>
+
 #include <algorithm>
 
 namespace box_query {
@@ -122,20 +124,27 @@ void answer(const CastRaysRequest& request, Context& context, CastRaysResponse& 
   response.points.resize(want_points ? rays : 0);
   response.normals.resize(want_normals ? rays : 0);
   response.boxes.resize(want_boxes ? rays : 0);
-  for (std::size_t i = 0; i < rays; ++i) {
-    checkRunning();
-    const Ray ray =
-        rayIn(context, elementAt(request.origins, i), request.directions[i], {"directions", i});
-    const double max_range =
-        request.max_ranges.empty() ? kInf : limitOf(elementAt(request.max_ranges, i));
-    Hit hit;
+  const auto rayOf = [&](std::size_t i) {
+    return rayIn(context, elementAt(request.origins, i), request.directions[i], {"directions", i});
+  };
+  const auto rangeOf = [&](std::size_t i) {
+    return request.max_ranges.empty() ? kInf : limitOf(elementAt(request.max_ranges, i));
+  };
+  const auto cast = [&](const Ray& ray, double max_range) {
     if (closest) {
-      hit = scene.cast(ray, max_range, looked_at);
-      response.ranges[i] = hit.range;
-    } else {
-      hit.hit = scene.castAny(ray, max_range, looked_at);
+      return scene.cast(ray, max_range, looked_at);
     }
+    Hit hit;
+    hit.hit = scene.castAny(ray, max_range, looked_at);
+    return hit;
+  };
+  const auto answerOne = [&](std::size_t i) {
+    checkRunning();
+    const Hit hit = cast(rayOf(i), rangeOf(i));
     response.hits[i] = hit.hit;
+    if (closest) {
+      response.ranges[i] = hit.range;
+    }
     if (want_exits) {
       response.exit_ranges[i] = hit.exit_range;
     }
@@ -148,7 +157,16 @@ void answer(const CastRaysRequest& request, Context& context, CastRaysResponse& 
     if (want_boxes) {
       response.boxes[i] = hit.hit ? static_cast<std::int32_t>(hit.box) : -1;
     }
-    draw(ray, max_range, hit, miss_means_free, context.drawing);
+  };
+  forEachPart(rays, context.batch_threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      answerOne(i);
+    }
+  });
+  // The few that are drawn, where somebody looks, are cast again.
+  for (std::size_t i = 0; i < rays && !context.drawing.full(); ++i) {
+    const Ray ray = rayOf(i);
+    draw(ray, rangeOf(i), cast(ray, rangeOf(i)), miss_means_free, context.drawing);
   }
   nameBoxes(context.snapshot, {&response.boxes}, response);
 }

@@ -3,6 +3,10 @@
 #include "ros/named_boxes.h"
 #include "ros/request_checks.h"
 
+#include <box_query/batch.h>
+
+#include <algorithm>
+
 namespace box_query {
 namespace {
 
@@ -160,11 +164,13 @@ void answer(const CheckSegmentsRequest& request, Context& context,
   response.blocking_boxes.resize(wanted(request.want_boxes), -1);
   response.first_blocked = -1;
 
-  for (std::size_t i = 0; i < segments; ++i) {
-    checkRunning();
+  const auto segmentOf = [&](std::size_t i) {
     const auto [start, end] = endsOf(request, i);
-    const Segment segment =
-        segmentIn(context, request.points[start], request.points[end], {"points", start});
+    return segmentIn(context, request.points[start], request.points[end], {"points", start});
+  };
+  const auto answerOne = [&](std::size_t i, bool is_drawn) {
+    checkRunning();
+    const Segment segment = segmentOf(i);
     const double radius = request.radii.empty() ? 0.0 : elementAt(request.radii, i);
     Clearance nearest;
     if (want_nearest) {
@@ -194,17 +200,33 @@ void answer(const CheckSegmentsRequest& request, Context& context,
       response.nearest_boxes[i] = indexOf(nearest.box);
       response.blocking_boxes[i] = indexOf(blockage.box);
     }
-    draw(segment,
-         blocked   ? Outcome::kMet
-         : trusted ? Outcome::kFree
-                   : Outcome::kUnknown,
-         nearest, blockage, context.drawing);
-    if (blocked && response.first_blocked < 0) {
-      response.first_blocked = static_cast<std::int32_t>(i);
-      if (request.stop_at_blocked) {
-        break;
-      }
+    if (is_drawn) {
+      draw(segment,
+           blocked   ? Outcome::kMet
+           : trusted ? Outcome::kFree
+                     : Outcome::kUnknown,
+           nearest, blockage, context.drawing);
     }
+    return blocked;
+  };
+  // Those that are drawn, and those that may be the last, one after the other.
+  std::size_t answered = 0;
+  bool ended = false;
+  while (answered < segments && !ended && (request.stop_at_blocked || !context.drawing.full())) {
+    ended = answerOne(answered++, true) && request.stop_at_blocked;
+  }
+  if (!ended) {
+    const std::size_t first = answered;
+    forEachPart(segments - first, context.batch_threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        answerOne(first + i, false);
+      }
+    });
+  }
+  const auto blocked =
+      std::find(response.states.begin(), response.states.end(), CheckSegmentsResponse::BLOCKED);
+  if (blocked != response.states.end()) {
+    response.first_blocked = static_cast<std::int32_t>(blocked - response.states.begin());
   }
   response.all_clear = segments > 0 && trusted && response.first_blocked < 0;
   nameBoxes(context.snapshot, {&response.nearest_boxes, &response.blocking_boxes}, response);

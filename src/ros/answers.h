@@ -35,6 +35,8 @@ struct Context {
   ros::Time now;      ///< ROS time of the answer
   FrameChange frame;  ///< from the frame of the request
   Drawing drawing;    ///< filled by the answer
+  /// Threads that work on a batch: see forEachPart().
+  int batch_threads = 1;
 };
 
 /// Fills the whole response but for `success` and `message`.

@@ -40,6 +40,7 @@ const Entry kNumbers[] = {
     {"max_boxes_per_message", &P::max_boxes_per_message, {1, 1e8, ""}, "a message with more boxes is refused whole"},
     {"max_queries_per_call", &P::max_queries_per_call, {1, 1e8, ""}, "a request with more rays or segments is refused"},
     {"service_threads", &P::service_threads, {1, 64, ""}, "threads that answer services"},
+    {"batch_threads", &P::batch_threads, {0, 256, ""}, "threads that work on a batch of rays or segments; 0: as many as there are cores"},
     {"build_ahead", &P::build_ahead, {0, 3600, "s"}, "after a query, scenes are built as boxes come for so long; later when asked for"},
     {"kept_scenes", &P::kept_scenes, {1, 10000, ""}, "past scenes that `~get_scene` can still return"},
     {"max_kept_boxes", &P::max_kept_boxes, {0, 1e8, ""}, "boxes in all of these together; the oldest go first, the latest stays"},

@@ -68,7 +68,8 @@ void Server::answerNow(const Request& request, Response& response) {
   check(request, static_cast<std::size_t>(monitor_.parameters().max_queries_per_call));
   const FrameChange frame = frameOf(request.header);
   const SnapshotPtr snapshot = monitor_.currentScene();
-  Context context = {*snapshot, ros::Time::now(), frame, markers_.drawing()};
+  Context context = {*snapshot, ros::Time::now(), frame, markers_.drawing(),
+                     monitor_.parameters().batch_threads};
   answer(request, context, response);
   response.message = unknownNamespace(BoxFilter(request), *snapshot);
   markers_.show(context.drawing.take());

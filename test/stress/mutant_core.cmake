@@ -54,5 +54,6 @@ foreach(file ${core_sources})
 endforeach()
 add_library(${PROJECT_NAME}_mutant STATIC EXCLUDE_FROM_ALL ${mutant_sources})
 bq_configure(${PROJECT_NAME}_mutant)
+target_link_libraries(${PROJECT_NAME}_mutant ${TBB_LIBRARY})
 #catkin_lint: ignore_once missing_directory
 target_include_directories(${PROJECT_NAME}_mutant BEFORE PRIVATE ${mutant_dir}/src)

@@ -24,7 +24,7 @@ run_with() {
     shift 2
     exec "$@" -c "$source" -o "$object"' sh SOURCE "$work/$name" "$compiler" -std=c++17 -ffp-contract=off -w \
     -I"$root/include" -I"$root/src" -I"$root/test" -isystem "$eigen" "$@" < "$work/sources"
-  "$compiler" "$work/$name"/*.o -o "$work/$name/program" -pthread
+  "$compiler" "$work/$name"/*.o -o "$work/$name/program" -ltbb -pthread
   if "$work/$name/program" > "$work/$name/answers" && cmp -s "$work/expected" "$work/$name/answers"; then
     echo "$compiler $*: the same"
   else

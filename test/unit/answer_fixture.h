@@ -123,10 +123,11 @@ struct ResponseTo<FindIntersectionsRequest> {
 };
 
 template <class Request>
-auto ask(Request request, const Snapshot& snapshot, const FrameChange& frame = FrameChange()) {
+auto ask(Request request, const Snapshot& snapshot, const FrameChange& frame = FrameChange(),
+         int batch_threads = 1) {
   request.header.frame_id = frame.same() ? snapshot.frame : "other";
   check(request, 100000);
-  Context context = {snapshot, ros::Time(101), frame, Drawing()};
+  Context context = {snapshot, ros::Time(101), frame, Drawing(), batch_threads};
   typename ResponseTo<Request>::type response;
   answer(request, context, response);
   return response;

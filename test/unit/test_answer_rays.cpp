@@ -186,6 +186,33 @@ TEST(CastRays, EqualSingleRaysToTheLastBit) {
   }
 }
 
+TEST(CastRays, AreTheSameOnManyThreads) {
+  const Snapshot snapshot = randomSnapshot(60, 1);
+  CastRaysRequest request = randomRays(3000, 2);
+  request.want_exits = request.want_points = request.want_normals = request.want_boxes = true;
+  for (const auto mode : {CastRaysRequest::CLOSEST, CastRaysRequest::ANY}) {
+    request.mode = mode;
+    const CastRaysResponse one = ask(request, snapshot, crookedFrame(), 1);
+    EXPECT_GT(std::count(one.hits.begin(), one.hits.end(), 1), 600);
+    EXPECT_EQ(bytesOf(one), bytesOf(ask(request, snapshot, crookedFrame(), 4)));
+  }
+}
+
+TEST(CastRays, NameTheFirstRayAtFaultOnManyThreads) {
+  CastRaysRequest request = randomRays(3000, 2);
+  for (std::size_t i = 1234; i < 3000; ++i) {
+    request.origins[i].x = 1.7e308;
+    request.origins[i].y = 1.7e308;
+  }
+  try {
+    ask(request, smallSnapshot(), crookedFrame(), 4);
+    FAIL() << "it was answered";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("directions[1234]"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(CastRays, AnyHitsAreTheClosestHits) {
   const Snapshot snapshot = randomSnapshot(60, 1);
   CastRaysRequest request = randomRays(500, 2);

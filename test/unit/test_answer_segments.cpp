@@ -151,6 +151,19 @@ TEST(CheckSegments, EqualSingleSegmentsToTheLastBit) {
   }
 }
 
+TEST(CheckSegments, AreTheSameOnManyThreads) {
+  const Snapshot snapshot = randomSnapshot(12, 3);
+  CheckSegmentsRequest request = randomPath(3001, 4);
+  for (const bool wanted : {false, true}) {
+    request.want_clearances = request.want_points = wanted;
+    request.want_blocked_at = request.want_boxes = wanted;
+    const CheckSegmentsResponse one = ask(request, snapshot, crookedFrame(), 1);
+    EXPECT_GT(std::count(one.states.begin(), one.states.end(), kBlocked), 300);
+    EXPECT_GT(std::count(one.states.begin(), one.states.end(), kClear), 300);
+    EXPECT_EQ(bytesOf(one), bytesOf(ask(request, snapshot, crookedFrame(), 4)));
+  }
+}
+
 TEST(CheckSegments, StatesDoNotDependOnWhatIsWanted) {
   const Snapshot snapshot = randomSnapshot(12, 3);
   CheckSegmentsRequest request = randomPath(301, 4);

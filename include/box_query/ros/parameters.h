@@ -46,6 +46,9 @@ struct Parameters {
   int max_queries_per_call = 1000000;
   /// Threads that answer services.
   int service_threads = 2;
+  /// Threads that work on one batch of rays or segments, shared by all; 0: as many as there are
+  /// cores.
+  int batch_threads = 0;
 
   /// [s] after the last query during which new scenes are built as boxes come; later they are built
   /// when asked for.

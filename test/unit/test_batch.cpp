@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "reference/sampler.h"
+
+#include <box_query/batch.h>
+
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace box_query {
+namespace {
+
+constexpr std::size_t kQueries = 3000;
+constexpr double kRange = 30.0;
+
+/// More threads than this machine may have, so that parts really are worked on at once.
+constexpr int kThreads[] = {0, 1, 2, 7};
+
+struct Questions {
+  Scene scene;
+  std::vector<Ray> rays;
+  std::vector<Segment> segments;
+  BoxMask mask{0};
+};
+
+Questions questions() {
+  reference::Sampler sampler(11);
+  std::vector<Box> boxes;
+  while (boxes.size() < 500) {
+    boxes.emplace_back(
+        OrientedBox{sampler.vector(-20.0, 20.0), sampler.rotation(), sampler.vector(0.1, 1.5)});
+  }
+  Questions q;
+  q.mask = BoxMask(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); i += 3) {
+    q.mask.set(i, false);
+  }
+  q.scene = Scene(std::move(boxes));
+  while (q.rays.size() < kQueries) {
+    q.rays.push_back({sampler.vector(-20.0, 20.0), sampler.direction()});
+    q.segments.push_back({sampler.vector(-20.0, 20.0), sampler.vector(-20.0, 20.0)});
+  }
+  return q;
+}
+
+/// Numbers of a miss are NaN.
+bool same(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+bool same(const Vector3& a, const Vector3& b) {
+  return same(a[0], b[0]) && same(a[1], b[1]) && same(a[2], b[2]);
+}
+
+class BatchTest : public testing::TestWithParam<int> {
+ protected:
+  BatchOptions options() const { return {kRange, &q_.mask, GetParam()}; }
+
+  const Questions q_ = questions();
+};
+
+TEST_P(BatchTest, CastsAreThoseOfSingleRays) {
+  const auto hits = castEach(q_.scene, q_.rays, options());
+  const auto closest = castClosestEach(q_.scene, q_.rays, options());
+  const auto any = castAnyEach(q_.scene, q_.rays, options());
+  ASSERT_EQ(hits.size(), kQueries);
+  ASSERT_EQ(closest.size(), kQueries);
+  ASSERT_EQ(any.size(), kQueries);
+  std::size_t num_hits = 0;
+  for (std::size_t i = 0; i < kQueries; ++i) {
+    const Hit hit = q_.scene.cast(q_.rays[i], kRange, &q_.mask);
+    EXPECT_EQ(hits[i].box, hit.box);
+    EXPECT_TRUE(same(hits[i].range, hit.range) && same(hits[i].exit_range, hit.exit_range));
+    EXPECT_TRUE(same(hits[i].point, hit.point) && same(hits[i].normal, hit.normal));
+    const ClosestBox box = q_.scene.castClosest(q_.rays[i], kRange, &q_.mask);
+    EXPECT_EQ(closest[i].box, hit.box);
+    EXPECT_EQ(closest[i].t_lower, box.t_lower);
+    EXPECT_EQ(closest[i].t_upper, box.t_upper);
+    EXPECT_EQ(any[i] != 0, hit.hit);
+    num_hits += hit.hit ? 1 : 0;
+  }
+  EXPECT_GT(num_hits, kQueries / 5);
+  EXPECT_LT(num_hits, kQueries);
+}
+
+TEST_P(BatchTest, SegmentsAreThoseOfSingleCalls) {
+  constexpr double kRadius = 0.5;
+  const auto clear = isClearEach(q_.scene, q_.segments, kRadius, options());
+  const auto nearest = clearanceEach(q_.scene, q_.segments, options());
+  const auto blocked = firstBlockageEach(q_.scene, q_.segments, kRadius, options());
+  ASSERT_EQ(clear.size(), kQueries);
+  ASSERT_EQ(nearest.size(), kQueries);
+  ASSERT_EQ(blocked.size(), kQueries);
+  std::size_t num_clear = 0;
+  for (std::size_t i = 0; i < kQueries; ++i) {
+    const Clearance one = q_.scene.clearance(q_.segments[i], &q_.mask);
+    const Blockage blockage = q_.scene.firstBlockage(q_.segments[i], kRadius, &q_.mask);
+    EXPECT_EQ(nearest[i].box, one.box);
+    EXPECT_EQ(nearest[i].distance, one.distance);
+    EXPECT_TRUE(same(nearest[i].on_box, one.on_box));
+    EXPECT_EQ(blocked[i].box, blockage.box);
+    EXPECT_EQ(blocked[i].blocked_at, blockage.blocked_at);
+    EXPECT_EQ(clear[i] != 0, !blockage.blocked);
+    num_clear += clear[i];
+  }
+  EXPECT_GT(num_clear, kQueries / 20);
+  EXPECT_LT(num_clear, kQueries - kQueries / 20);
+}
+
+TEST_P(BatchTest, EveryIndexIsInOnePart) {
+  for (const std::size_t count : {0U, 1U, 127U, 128U, 129U, 1000U, 12345U}) {
+    std::vector<std::atomic<int>> seen(count);
+    forEachPart(count, GetParam(), [&](std::size_t begin, std::size_t end) {
+      EXPECT_LT(begin, end);
+      for (std::size_t i = begin; i < end; ++i) {
+        ++seen[i];
+      }
+    });
+    for (const auto& times : seen) {
+      EXPECT_EQ(1, times);
+    }
+  }
+}
+
+TEST_P(BatchTest, TheExceptionOfTheLowestIndexIsThrown) {
+  const auto failing = [](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i >= 700) {
+        throw std::runtime_error(std::to_string(i));
+      }
+    }
+  };
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    try {
+      forEachPart(kQueries, GetParam(), failing);
+      FAIL() << "nothing was thrown";
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ("700", error.what());
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, BatchTest, testing::ValuesIn(kThreads));
+
+std::set<std::thread::id> threadsOf(std::size_t count, int max_threads) {
+  std::set<std::thread::id> ids;
+  std::mutex mutex;
+  forEachPart(count, max_threads, [&](std::size_t /*begin*/, std::size_t /*end*/) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    ids.insert(std::this_thread::get_id());
+  });
+  return ids;
+}
+
+TEST(Batch, StaysOnTheCallersThreadWhereItIsSmallOrMay) {
+  const std::set<std::thread::id> own = {std::this_thread::get_id()};
+  EXPECT_EQ(own, threadsOf(100, 0));
+  EXPECT_EQ(own, threadsOf(100000, 1));
+}
+
+TEST(Batch, UsesNoMoreThreadsThanItMay) {
+  EXPECT_LE(threadsOf(100000, 2).size(), 2U);
+}
+
+TEST(Batch, OfNothingIsNothing) {
+  EXPECT_TRUE(castEach(Scene(), {}).empty());
+  const auto misses = castEach(Scene(), std::vector<Ray>(1000, Ray{{0, 0, 0}, {1, 0, 0}}));
+  ASSERT_EQ(misses.size(), 1000U);
+  EXPECT_FALSE(misses.back().hit);
+}
+
+}  // namespace
+}  // namespace box_query
