@@ -102,7 +102,8 @@ struct SpeedRow {
   Timing timing;  ///< ratios: to box_query
   std::size_t asked;
   std::size_t hits;
-  /// Answers that are wrong by more than a nanometre; of box_query wrong ones at all.
+  /// Answers that are wrong even for boxes that differ by a nanometre; of box_query wrong ones at
+  /// all.
   std::size_t wrong;
 };
 

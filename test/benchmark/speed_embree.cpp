@@ -6,9 +6,12 @@
 #include <box_query/distance.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
+#include <dlfcn.h>
 #include <embree3/rtcore.h>
 
 namespace box_query::benchmark {
@@ -249,11 +252,27 @@ std::unique_ptr<SpeedMethod> makeEmbreeTriangles(const std::vector<OrientedBox>&
   return std::make_unique<EmbreeTriangles>(boxes);
 }
 
+namespace {
+
+/// Whether the library that was loaded reports failed assertions: then it was built with them.
+bool hasAssertions() {
+  Dl_info info = {};
+  if (dladdr(reinterpret_cast<const void*>(&rtcNewDevice), &info) == 0) {
+    return false;
+  }
+  std::ifstream library(info.dli_fname, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(library), {}};
+  return bytes.find("__assert_fail") != std::string::npos;
+}
+
+}  // namespace
+
 std::vector<std::string> peerNotes() {
   const auto version = rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_VERSION);
   return {"Embree " + std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) +
           "." + std::to_string(version % 100) +
-          " as the system has it; Debian's build has assertions on, which cost it time"};
+          (hasAssertions() ? ", built with assertions, which cost it time"
+                           : ", built without assertions")};
 }
 
 }  // namespace box_query::benchmark

@@ -52,6 +52,15 @@ SpeedAnswer truthOf(Question question, const std::vector<OrientedBox>& boxes, co
   return truth;
 }
 
+/// Whether any box would be met if all were larger by so much.
+bool meetsAny(Question question, const std::vector<OrientedBox>& boxes, const Ray& ray, double by) {
+  return std::any_of(boxes.begin(), boxes.end(), [&](const OrientedBox& box) {
+    return entryOf(ray, resized(box, by)) <= reachOf(question) + by;
+  });
+}
+
+/// Of the library: not the right answer. Of others: not right for any boxes that differ from these
+/// by less than a nanometre.
 bool isWrong(Question question, const std::vector<OrientedBox>& boxes, const Ray& ray,
              const SpeedAnswer& answer, const SpeedAnswer& truth, bool exactly) {
   if (question == Question::kClearance) {
@@ -59,24 +68,25 @@ bool isWrong(Question question, const std::vector<OrientedBox>& boxes, const Ray
                    : std::fabs(answer.distance - truth.distance) > kNanometre;
   }
   const bool closest = question != Question::kAny30 && question != Question::kSegment;
-  const bool same =
-      (answer.box == kNoBox) == (truth.box == kNoBox) && (!closest || answer.box == truth.box);
+  const bool is_met = answer.box != kNoBox;
+  const bool same = is_met == (truth.box != kNoBox) && (!closest || answer.box == truth.box);
   if (exactly) {
-    return !same || (question == Question::kRounded30 && truth.box != kNoBox &&
-                     answer.distance != truth.distance);
+    return !same ||
+           (question == Question::kRounded30 && is_met && answer.distance != truth.distance);
   }
   if (same) {
     return false;
   }
-  const double reach = reachOf(question);
-  if (answer.box == kNoBox) {
-    return entryOf(ray, resized(boxes[truth.box], -kNanometre)) < reach - kNanometre;
+  if (!is_met) {
+    return meetsAny(question, boxes, ray, -kNanometre);
   }
   if (!closest) {
-    return true;  // no margin here: counted as it stands
+    return !meetsAny(question, boxes, ray, kNanometre);
   }
-  const double entry = entryOf(ray, resized(boxes[answer.box], kNanometre));
-  return entry > std::min(reach, truth.distance) + 1e3 * kNanometre;
+  const double earliest = entryOf(ray, resized(boxes[answer.box], kNanometre));
+  const double latest = truth.box == kNoBox ? std::numeric_limits<double>::infinity()
+                                            : entryOf(ray, resized(boxes[truth.box], -kNanometre));
+  return !(earliest <= std::min(reachOf(question) + kNanometre, latest));
 }
 
 }  // namespace

@@ -23,6 +23,9 @@ TEST(Speed, ComparesMethodsOnHitsAndMissesAndFindsNothingWrong) {
           EXPECT_EQ(0U, row.wrong) << what;
           EXPECT_EQ(1.0, row.timing.ratio.median) << what;
         }
+        if (row.method == "plain scan") {
+          EXPECT_EQ(0U, row.wrong) << what;  // in double, on boxes that are not hostile
+        }
       }
     }
   }
