@@ -19,6 +19,7 @@ struct SegmentDistance {
   /// Smallest parameter in [0, 1] at which the distance is attained, correctly rounded.
   double t = std::numeric_limits<double>::quiet_NaN();
   /// The points at that parameter, within a few ulp of the largest coordinate of segment and box.
+  /// Always finite: a coordinate beyond the largest double is the largest one.
   Vector3 on_segment = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
   Vector3 on_box = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
 };

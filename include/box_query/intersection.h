@@ -43,6 +43,7 @@ struct Intersection {
   FaceSet left;
   /// X(t_enter) and X(t_exit), clamped to the box in its own frame; NaN on a miss. Within a few ulp
   /// of the largest coordinate of component and box. Equal bits on every machine.
+  /// Where there are any, finite: a coordinate beyond the largest double is the largest one.
   Vector3 enter_point = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
   Vector3 exit_point = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
 };

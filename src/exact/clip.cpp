@@ -40,9 +40,10 @@ Vector3 roundedPoint(const Component& component, const Parameter& t) {
   Vector3 point;
   for (std::size_t i = 0; i < 3; ++i) {
     const Dyadic& start = component.origin[i];
-    point[static_cast<int>(i)] =
-        t.den.sign() != 0 ? roundedQuotient(start * t.den + t.num * component.direction[i], t.den)
-                          : roundedQuotient(start, 1.0);
+    point[static_cast<int>(i)] = t.den.sign() != 0
+                                     ? finiteCoordinate(roundedQuotient(
+                                           start * t.den + t.num * component.direction[i], t.den))
+                                     : roundedQuotient(start, 1.0);
   }
   return point;
 }

@@ -101,4 +101,9 @@ double roundedSqrt(const Dyadic& num, const Dyadic& den) {
                (exponent - shift) / 2);
 }
 
+double finiteCoordinate(double x) {
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  return x > kLargest ? kLargest : x < -kLargest ? -kLargest : x;
+}
+
 }  // namespace box_query::exact

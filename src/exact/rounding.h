@@ -16,4 +16,7 @@ double roundedQuotient(const Dyadic& num, const Dyadic& den);
 /// @pre num >= 0, den > 0
 double roundedSqrt(const Dyadic& num, const Dyadic& den);
 
+/// A coordinate of a point; the largest double of its sign where none can hold it.
+double finiteCoordinate(double x);
+
 }  // namespace box_query::exact

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "geometry/distance_points.h"
 
+#include "exact/rounding.h"
 #include "geometry/rotation.h"
 
 #include <algorithm>
@@ -62,10 +63,10 @@ void setClosestPoints(const Segment& segment, const OrientedBox& box, SegmentDis
     return;  // the point of the segment itself, without the rounding of two rotations
   }
   for (int j = 0; j < 3; ++j) {
-    nearest.on_box[j] =
+    nearest.on_box[j] = exact::finiteCoordinate(
         (room * box.center[j] +
          (axes.of[0][j] * local[0] + axes.of[1][j] * local[1] + axes.of[2][j] * local[2])) /
-        room;
+        room);
   }
 }
 

@@ -193,5 +193,18 @@ TEST(BlockedAt, RoundsDownWhereTheRootIsNotADouble) {
   EXPECT_EQ(blockedAt(tenth, kCube, 1.0), std::nextafter(0.1, 0.0));
 }
 
+TEST(Distance, AClosestPointBeyondTheLargestDoubleIsFinite) {
+  // An eighth turn about z: the nearest point of the box lies in direction (1, -1) of the segment.
+  const double half_angle = std::atan(1.0) / 2.0;
+  const OrientedBox box = {{1.7e308, -1e308, 0},
+                           Quaternion(std::cos(half_angle), 0, 0, std::sin(half_angle)),
+                           {1.7e308, 1e307, 1}};
+  const Vector3 at(1.79e308, 1e308, 0);
+  const SegmentDistance nearest = distance(Segment{at, at}, box);
+  EXPECT_NEAR(nearest.distance / 1e308, 1.25, 0.01);
+  EXPECT_EQ(nearest.on_box.x(), std::numeric_limits<double>::max());
+  EXPECT_NEAR(nearest.on_box.y() / 1e308, 0.115, 0.01);
+}
+
 }  // namespace
 }  // namespace box_query

@@ -231,5 +231,13 @@ TEST(FindIntersection, ALineInAFacePlaneOfABoxThatIsHardlyTurned) {
   EXPECT_EQ(touch.entered, faces({2}));
 }
 
+TEST(FindIntersection, APointBeyondTheLargestDoubleIsFinite) {
+  const OrientedBox box = {{1e308, 0, 0}, Quaternion::Identity(), {1e308, 1, 1}};
+  const Intersection i = findIntersection(Ray{{0.5e308, 0, 0}, {1, 0, 0}}, box);
+  ASSERT_EQ(i.num_points, 2);
+  EXPECT_EQ(i.t_exit, 1.5e308);
+  EXPECT_EQ(i.exit_point, Vector3(std::numeric_limits<double>::max(), 0, 0));
+}
+
 }  // namespace
 }  // namespace box_query

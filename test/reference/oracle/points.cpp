@@ -74,7 +74,15 @@ double pointError(const Vector3& point, const ExactPoint& exact, double scale) {
   double largest = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
     const Dyadic coordinate = Dyadic(point[static_cast<Eigen::Index>(i)]) * exact.denominator;
-    largest = std::max(largest, std::abs(approximateRatio(coordinate - exact.numerator[i], unit)));
+    // A coordinate beyond the largest double is to be that.
+    const Dyadic limit = Dyadic(std::numeric_limits<double>::max()) * exact.denominator;
+    Dyadic wanted = exact.numerator[i];
+    if (compare(wanted, limit) > 0) {
+      wanted = limit;
+    } else if (compare(limit + wanted, Dyadic(0.0)) < 0) {
+      wanted = Dyadic(0.0) - limit;
+    }
+    largest = std::max(largest, std::abs(approximateRatio(coordinate - wanted, unit)));
   }
   return largest;
 }
