@@ -10,6 +10,9 @@ namespace box_query::exact::bounds {
 constexpr double kDistance = 160 * 0x1p-53;
 /// The slope of the squared distance, times |direction|_1 s.
 constexpr double kSlope = 160 * 0x1p-53;
+/// Shorter directions have the error of one with this |direction|_1, far above what underflow takes
+/// from them in the frame of a box, and from their products with an excess.
+constexpr double kShortestDirection = 0x1p-800;
 /// Scales that the filter takes: nothing overflows, and what underflow adds is far below the
 /// bounds.
 constexpr double kSmallestScale = 0x1p-100;

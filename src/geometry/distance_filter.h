@@ -46,8 +46,9 @@ struct SegmentSlabs {
   double error() const { return exact::bounds::kDistance * scale; }
   /// Bounds the error of direction . excess, half the slope of the squared distance.
   double slopeError() const {
-    return exact::bounds::kSlope * scale *
-           (std::fabs(direction[0]) + std::fabs(direction[1]) + std::fabs(direction[2]));
+    const double length =
+        std::fabs(direction[0]) + std::fabs(direction[1]) + std::fabs(direction[2]);
+    return exact::bounds::kSlope * scale * std::max(length, exact::bounds::kShortestDirection);
   }
 };
 

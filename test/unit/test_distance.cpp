@@ -114,6 +114,18 @@ TEST(Distance, TheNormOfTheQuaternionDoesNotMatter) {
   }
 }
 
+TEST(Distance, ASegmentWhoseDirectionUnderflowsInTheFrameOfTheBox) {
+  const Segment segment{{-kTiny, -kTiny, 1.0}, {2 * kTiny, -2 * kTiny, 1.0}};
+  for (const double x : {0.1, 0.2, 0.3, 0.4}) {
+    for (const double y : {-0.4, -0.2, 0.2, 0.4}) {
+      const OrientedBox point{{0, 0, 0}, Quaternion(0.7, x, y, 0.3), {0, 0, 0}};
+      const SegmentDistance d = distance(segment, point);
+      EXPECT_EQ(d.distance, 1.0);
+      EXPECT_EQ(d.t, 0.2) << x << " " << y;
+    }
+  }
+}
+
 TEST(Distance, WholeRangeOfDouble) {
   const AlignedBox all{Vector3::Constant(-kHuge), Vector3::Constant(kHuge)};
   EXPECT_EQ(distance({Vector3::Constant(-kHuge), Vector3::Constant(kHuge)}, all).distance, 0.0);
