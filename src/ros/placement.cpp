@@ -2,6 +2,7 @@
 #include "ros/placement.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include <tf2/exceptions.h>
 
@@ -35,6 +36,15 @@ bool moveBox(const FramePose& pose, OrientedBox& box) {
   box.center = (pose.rotation * box.center + pose.translation).eval();
   box.orientation = pose.quaternion * box.orientation;
   return box.center.allFinite();
+}
+
+std::string describe(const WaitingList::Place& place, const std::string& fixed_frame) {
+  std::ostringstream text;
+  text << "the transform from frame '" << place.first << "' to '" << fixed_frame << "'";
+  if (!place.second.isZero()) {
+    text << " at time " << place.second;
+  }
+  return text.str();
 }
 
 void WaitingList::add(const Place& place, Word&& word, Clock::time_point deadline) {

@@ -81,4 +81,7 @@ class WaitingList {
   std::map<Place, std::deque<Waiting>> words_;  // no entry is empty
 };
 
+/// "the transform from frame 'a' to 'map' at time 12", as part of a sentence.
+std::string describe(const WaitingList::Place& place, const std::string& fixed_frame);
+
 }  // namespace box_query
