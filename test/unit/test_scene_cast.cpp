@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "kernels/scene_view.h"
+
 #include <box_query/scene.h>
 
 #include <algorithm>
@@ -221,6 +223,59 @@ TEST(SceneCast, BoxesBehindOneFrontTieToTheLowestIndex) {
     const Hit hit = scene.cast(Ray{{0.0, 0.0, 0.0}, {1.0, slope, 0.0}});
     EXPECT_EQ(slope < 0.5 ? 2U : 0U, hit.box) << slope;
     EXPECT_EQ(2.0, hit.t);
+  }
+}
+
+/// More boxes than a kernel keeps as candidates: it hands them over in portions.
+constexpr std::size_t kMany = 3 * kernels::Found::kCapacity + 8;
+
+TEST(SceneCast, MoreTiesThanAKernelKeepsGoToTheLowestIndex) {
+  // One solid, many times over. Where it is entered no double says.
+  const OrientedBox solid{{5, 0, 0}, Quaternion(0.9, 0.1, -0.2, 0.3), {1, 1, 1}};
+  const Scene scene(std::vector<Box>(kMany, solid));
+  const double range = Scene({solid}).cast(kAlongX).range;
+  BoxMask mask(kMany);
+  for (std::size_t first = 0; first < kMany; first += 10) {
+    const Hit hit = scene.cast(kAlongX, kInf, &mask);
+    EXPECT_EQ(first, hit.box);
+    EXPECT_EQ(range, hit.range);
+    EXPECT_EQ(first, scene.castClosest(kAlongX, kInf, &mask).box);
+    EXPECT_TRUE(scene.castAny(kAlongX, std::nextafter(range, kInf), &mask));
+    EXPECT_FALSE(scene.castAny(kAlongX, std::nextafter(range, 0.0), &mask));
+    for (std::size_t i = first; i < first + 10; ++i) {
+      mask.set(i, false);
+    }
+  }
+  EXPECT_FALSE(scene.castAny(kAlongX, kInf, &mask));
+}
+
+TEST(SceneCast, MoreNearMissesThanAKernelKeepsAreDecided) {
+  // Boards whose upper faces are 2.8e-17 below the ray.
+  const double height = 0.1 + 0.2;  // rounded up
+  std::vector<Box> boards;
+  for (std::size_t i = 0; i < kMany; ++i) {
+    const double turn = 0.01 * static_cast<double>(i + 1);
+    boards.emplace_back(OrientedBox{
+        {5.0, 0.0, 0.1}, Quaternion(std::cos(turn), 0, 0, std::sin(turn)), {1.0, 1.0, 0.2}});
+  }
+  const Ray over{{0.0, 0.0, height}, {1.0, 0.0, 0.0}};
+  const Segment along{over.origin, {9.0, 0.0, height}};
+  const Scene missed(boards);
+  EXPECT_FALSE(missed.cast(over).hit);
+  EXPECT_FALSE(missed.castClosest(over).hit);
+  EXPECT_FALSE(missed.castAny(over));
+  EXPECT_TRUE(missed.findAll(over).empty());
+  EXPECT_TRUE(missed.isClear(along, 0.0));
+  // And one that it touches, wherever it is among them.
+  for (std::size_t i = 0; i < kMany; i += 40) {
+    std::vector<Box> one_higher = boards;
+    one_higher[i] = OrientedBox{{5.0, 0.0, 0.0}, Quaternion(2.0, 0, 0, 1.0), {1.0, 1.0, height}};
+    const Scene touched(one_higher);
+    EXPECT_EQ(i, touched.cast(over).box);
+    EXPECT_EQ(i, touched.castClosest(over).box);
+    EXPECT_TRUE(touched.castAny(over));
+    EXPECT_EQ(1U, touched.findAll(over).size());
+    EXPECT_FALSE(touched.isClear(along, 0.0));
   }
 }
 
