@@ -5,6 +5,8 @@
 #include "ros/any_box_message.h"
 #include "ros/bell.h"
 #include "ros/box_tracker.h"
+#include "ros/kept_scenes.h"
+#include "ros/latest.h"
 #include "ros/publishers.h"
 #include "ros/transforms.h"
 
@@ -13,7 +15,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <deque>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -52,6 +53,24 @@ Parameters resolved(const ros::NodeHandle& nh, Parameters parameters) {
   return parameters;
 }
 
+/// A snapshot, and whether somebody has got it, who may ask for it by its id.
+struct Built {
+  explicit Built(Snapshot&& given) : snapshot(std::move(given)) {}
+  const Snapshot snapshot;
+  std::atomic<bool> handed_out{false};
+};
+using BuiltPtr = std::shared_ptr<Built>;
+
+BuiltPtr firstOf(BoxTracker& tracker) {
+  Draft empty = tracker.draft();
+  empty.snapshot.id = 1;
+  return std::make_shared<Built>(std::move(empty.snapshot));
+}
+
+SnapshotPtr snapshotOf(const BuiltPtr& built) {
+  return {built, &built->snapshot};
+}
+
 }  // namespace
 
 struct SceneMonitor::Impl {
@@ -70,13 +89,13 @@ struct SceneMonitor::Impl {
   void receive(std::size_t topic, AnyBoxMessage& message);
   void noticeTime();
 
-  SnapshotPtr newest();
-  SnapshotPtr build();
-  SnapshotPtr keep(SnapshotPtr handed_out);
+  void makeNewest();
+  void build();
+  SnapshotPtr handOut() const;
 
   void work();
   void tick();
-  bool queriedLately() const;
+  bool queriedLately();
 
   const Parameters parameters;
   ros::NodeHandle nh;
@@ -92,15 +111,12 @@ struct SceneMonitor::Impl {
   std::uint64_t unbuilt_changes = 0;
 
   std::mutex build_mutex;           ///< one at a time; locked before `mutex`
-  SnapshotPtr snapshot;             ///< never null; swapped atomically
+  Latest<BuiltPtr> latest;          ///< never null; written with build_mutex locked
   std::uint64_t shown_changes = 0;  ///< of the tracker, that the snapshot shows; with both locked
   std::uint64_t shown_boxes = 0;
-  std::atomic<Clock::rep> last_query{0};
-
-  std::mutex kept_mutex;
-  std::deque<SnapshotPtr> kept;
-  std::size_t kept_boxes = 0;  ///< in all of them
-  std::atomic<std::uint64_t> last_kept{0};
+  mutable std::atomic<bool> queried{false};  ///< since the worker looked
+  Clock::time_point last_query;              ///< as the worker saw it; its epoch: none yet
+  KeptScenes kept;
 
   std::mutex changed_mutex;  ///< held while `changed` runs
   std::function<void()> changed;
@@ -124,10 +140,9 @@ SceneMonitor::Impl::Impl(const ros::NodeHandle& node, const Parameters& given)
       topics(parameters.box_topics.size()),
       tracker(parameters, transforms.buffer()),
       now(ros::Time::now()),
+      latest(firstOf(tracker)),
+      kept(parameters),
       spinner(1, &queue) {
-  Draft empty = tracker.draft();
-  empty.snapshot.id = 1;
-  snapshot = std::make_shared<const Snapshot>(std::move(empty.snapshot));
   for (std::size_t topic = 0; topic < topics.size(); ++topic) {
     subscribe(topic);
   }
@@ -218,37 +233,41 @@ void SceneMonitor::Impl::noticeTime() {
   now = time;
 }
 
-/// A snapshot of all that is known now, from whoever makes it first.
-SnapshotPtr SceneMonitor::Impl::newest() {
+/// Makes the latest snapshot one of all that is known now, unless it is, or somebody else does.
+void SceneMonitor::Impl::makeNewest() {
   {
     const std::lock_guard<std::mutex> lock(mutex);
     noticeTime();
     tracker.expire(now);
     tracker.followLockedFrames();
     if (tracker.changes() == shown_changes) {
-      return std::atomic_load(&snapshot);
+      return;
     }
   }
-  return build();
+  build();
 }
 
-SnapshotPtr SceneMonitor::Impl::build() {
+void SceneMonitor::Impl::build() {
   const std::lock_guard<std::mutex> building(build_mutex);
   std::unique_lock<std::mutex> lock(mutex);
   const std::uint64_t changes = tracker.changes();
   const std::uint64_t boxes = tracker.boxesVersion();
   if (changes == shown_changes) {
-    return std::atomic_load(&snapshot);  // somebody else was faster
+    return;  // somebody else was faster
   }
   Draft draft = tracker.draft();
   unbuilt_changes += changes - shown_changes;
   lock.unlock();
 
-  const SnapshotPtr before = std::atomic_load(&snapshot);
-  draft.snapshot.id = before->id + 1;
+  const BuiltPtr before = latest.read([](const BuiltPtr& built) { return built; });
+  draft.snapshot.id = before->snapshot.id + 1;
   const bool same = boxes == shown_boxes;
-  draft.snapshot.scene = same ? before->scene : Scene(std::move(draft.boxes));
-  const auto after = std::make_shared<const Snapshot>(std::move(draft.snapshot));
+  draft.snapshot.scene = same ? before->snapshot.scene : Scene(std::move(draft.boxes));
+  const auto after = std::make_shared<Built>(std::move(draft.snapshot));
+  latest.write(after);
+  if (before->handed_out) {  // nobody can get it any more
+    kept.add(snapshotOf(before), after->snapshot.names.size());
+  }
 
   lock.lock();
   if (!same) {
@@ -257,27 +276,18 @@ SnapshotPtr SceneMonitor::Impl::build() {
   }
   shown_changes = changes;
   shown_boxes = boxes;
-  std::atomic_store(&snapshot, after);
-  return after;
 }
 
-/// Remembers what somebody may ask for by its id.
-SnapshotPtr SceneMonitor::Impl::keep(SnapshotPtr handed_out) {
-  if (handed_out->id > last_kept) {
-    const std::lock_guard<std::mutex> lock(kept_mutex);
-    if (handed_out->id > last_kept) {
-      kept.push_back(handed_out);
-      kept_boxes += handed_out->names.size();
-      while (
-          kept.size() > static_cast<std::size_t>(parameters.kept_scenes) ||
-          (kept.size() > 1 && kept_boxes > static_cast<std::size_t>(parameters.max_kept_boxes))) {
-        kept_boxes -= kept.front()->names.size();
-        kept.pop_front();
-      }
-      last_kept = handed_out->id;
-    }
+SnapshotPtr SceneMonitor::Impl::handOut() const {
+  if (!queried.load(std::memory_order_relaxed)) {
+    queried = true;
   }
-  return handed_out;
+  return latest.read([](const BuiltPtr& built) {
+    if (!built->handed_out.load(std::memory_order_relaxed)) {
+      built->handed_out = true;
+    }
+    return snapshotOf(built);
+  });
 }
 
 void SceneMonitor::Impl::work() {
@@ -316,11 +326,12 @@ void SceneMonitor::Impl::tick() {
   }
 }
 
-bool SceneMonitor::Impl::queriedLately() const {
-  const Clock::duration query(last_query);  // since the clock's epoch, 0: none yet
-  const Clock::duration since = Clock::now().time_since_epoch() - query;
-  return query.count() != 0 &&
-         std::chrono::duration<double>(since).count() < parameters.build_ahead;
+bool SceneMonitor::Impl::queriedLately() {
+  if (queried.exchange(false)) {
+    last_query = Clock::now();
+  }
+  return last_query != Clock::time_point() &&
+         std::chrono::duration<double>(Clock::now() - last_query).count() < parameters.build_ahead;
 }
 
 SceneMonitor::SceneMonitor(const ros::NodeHandle& nh, const Parameters& parameters)
@@ -331,19 +342,17 @@ SceneMonitor::~SceneMonitor() {
 }
 
 SnapshotPtr SceneMonitor::scene() const {
-  return impl_->keep(std::atomic_load(&impl_->snapshot));
+  return impl_->handOut();
 }
 
 SnapshotPtr SceneMonitor::currentScene() {
-  impl_->last_query = Clock::now().time_since_epoch().count();
-  return impl_->keep(impl_->newest());
+  impl_->makeNewest();
+  return impl_->handOut();
 }
 
 SnapshotPtr SceneMonitor::sceneById(std::uint64_t id) const {
-  const std::lock_guard<std::mutex> lock(impl_->kept_mutex);
-  const auto found = std::find_if(impl_->kept.begin(), impl_->kept.end(),
-                                  [id](const SnapshotPtr& snapshot) { return snapshot->id == id; });
-  return found == impl_->kept.end() ? nullptr : *found;
+  const SnapshotPtr latest = impl_->latest.read(snapshotOf);
+  return latest->id == id ? latest : impl_->kept.find(id);
 }
 
 std::string SceneMonitor::lookUpTransform(const std::string& target, const std::string& source,

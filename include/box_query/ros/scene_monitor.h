@@ -105,7 +105,13 @@ class SceneMonitor {
   SceneMonitor(const SceneMonitor&) = delete;
   SceneMonitor& operator=(const SceneMonitor&) = delete;
 
-  /// The snapshot that was built last: never null, never blocks, never builds.
+  /// The snapshot that was built last, never null: a few steps that take no lock, wait for nobody
+  /// and build nothing, for a planner's own thread. Take one for all the questions of a plan, and
+  /// keep it for as long as they are to fit together.
+  ///
+  /// As with currentScene(), boxes are built into new snapshots as they come for
+  /// Parameters::build_ahead seconds after the last call. A call after a longer silence returns
+  /// what there was before it.
   SnapshotPtr scene() const;
 
   /// The snapshot of all that has been received until now (lifetimes included), built first if need
