@@ -17,7 +17,7 @@ bq_packages() {
     */build) echo build-essential cmake libeigen3-dev libboost-dev libtbb-dev ;;&
     */test) echo libgmp-dev libgtest-dev ;;&
     */benchmark) echo python3-matplotlib ;;
-    */peers) echo libembree-dev ;;
+    */peers) echo libembree-dev libbullet-dev libfcl-dev libode-dev ;;
     debian/build) echo catkin libroscpp-dev libtf2-dev libtf2-ros-dev libtf2-msgs-dev libstd-msgs-dev \
       libgeometry-msgs-dev libvisualization-msgs-dev ros-std-msgs ros-geometry-msgs \
       ros-visualization-msgs ros-message-generation ros-message-runtime ;;

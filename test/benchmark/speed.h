@@ -37,12 +37,22 @@ const std::vector<std::string>& workloadKinds();
 /// Every n-th of the recorded scenes in `directory`; empty if there are none.
 Workload recordedScenes(const std::string& directory, std::size_t every, std::size_t rays);
 
-/// A question about a scene and a ray.
-enum class Question { kClosest30, kClosest, kRounded30, kAny30, kSegment, kClearance };
+/// A question about a scene and a ray; kBuild: how long the scene takes to be made.
+enum class Question {
+  kClosest30,
+  kClosest,
+  kRounded30,
+  kAny30,
+  kAll30,
+  kSegment,
+  kClearance,
+  kBuild
+};
 constexpr Question kQuestions[] = {Question::kClosest30, Question::kClosest, Question::kRounded30,
-                                   Question::kAny30,     Question::kSegment, Question::kClearance};
+                                   Question::kAny30,     Question::kAll30,   Question::kSegment,
+                                   Question::kClearance, Question::kBuild};
 const char* nameOf(Question question);
-/// How far a closest or any query looks [m], and the lengths of segments.
+/// How far closest, any and all queries look [m], and the lengths of segments.
 constexpr double kRange = 30.0;
 constexpr double kSegmentLength = 10.0;
 constexpr double kPathLength = 2.0;
@@ -51,12 +61,15 @@ inline Segment segmentAlong(const Ray& ray, double length) {
   return {ray.origin, ray.origin + length * ray.direction};
 }
 
-/// The box that a method finds, kNoBox for none; any box stands for a yes. Clearances come as a
-/// distance.
+/// The box that a method finds, kNoBox for none; any box stands for a yes.
 struct SpeedAnswer {
   std::size_t box = kNoBox;
-  double distance = 0.0;
+  double value = 0.0;  ///< The range, the clearance or how many boxes, where it is asked for.
 };
+
+inline SpeedAnswer allOf(std::size_t count) {
+  return {count > 0 ? 0 : kNoBox, static_cast<double>(count)};
+}
 
 /// A method over the boxes of one scene. What it cannot be asked it says by canAnswer().
 class SpeedMethod {
@@ -74,7 +87,7 @@ std::uint64_t passOf(const Method& method, Question question, const std::vector<
   std::uint64_t sum = 0;
   for (const Ray& ray : rays) {
     const SpeedAnswer answer = method.Method::ask(question, ray);
-    sum = 31 * sum + answer.box + static_cast<std::uint64_t>(answer.distance * 1e6);
+    sum = 31 * sum + answer.box + static_cast<std::uint64_t>(answer.value * 1e6);
   }
   return sum;
 }
@@ -82,6 +95,7 @@ std::uint64_t passOf(const Method& method, Question question, const std::vector<
 struct SpeedMethodKind {
   std::string name;
   std::function<std::unique_ptr<SpeedMethod>(const std::vector<OrientedBox>&)> make;
+  bool is_built = true;  ///< Whether there is something to build.
 };
 
 /// box_query first, then a plain scan, then the peers that were found.
@@ -89,26 +103,26 @@ std::vector<SpeedMethodKind> speedMethods();
 /// Of the peers, those that were not found and what is known of those that were, a line each.
 std::vector<std::string> peerNotes();
 
-/// @return null where Embree was not found when this was built
-std::unique_ptr<SpeedMethod> makeEmbreeBoxes(const std::vector<OrientedBox>& boxes);
-std::unique_ptr<SpeedMethod> makeEmbreeTriangles(const std::vector<OrientedBox>& boxes);
-
 /// One line of the table.
 struct SpeedRow {
   std::string workload;
   std::size_t boxes;  ///< in the mean
   Question question;
   std::string method;
-  Timing timing;  ///< ratios: to box_query
-  std::size_t asked;
-  std::size_t hits;
-  /// Answers that are wrong even for boxes that differ by a nanometre; of box_query wrong ones at
+  Timing timing;  ///< Ratios: to box_query. Of kBuild, a box.
+  /// Answers that were compared with exact ones.
+  std::size_t asked = 0;
+  std::size_t hits = 0;
+  /// Those that are wrong even for boxes that differ by a nanometre; of box_query wrong ones at
   /// all.
-  std::size_t wrong;
+  std::size_t wrong = 0;
 };
 
-/// @param rounds turns of each method on the clock
-/// @param sample rays whose answers are compared with one exact pair after the other
-std::vector<SpeedRow> measureSpeed(const Workload& workload, int rounds, std::size_t sample);
+struct SpeedOptions {
+  int rounds = 15;           ///< Turns of each method on the clock.
+  std::size_t sample = 500;  ///< Rays whose answers are compared, fewer where boxes are very many.
+};
+
+std::vector<SpeedRow> measureSpeed(const Workload& workload, const SpeedOptions& options);
 
 }  // namespace box_query::benchmark

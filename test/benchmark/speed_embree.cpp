@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Embree 3 as its documentation recommends it for static scenes of high quality, one ray a call.
 #include "benchmark/methods_slab.h"
-#include "benchmark/speed.h"
+#include "benchmark/speed_peers.h"
 
 #include <box_query/distance.h>
 
@@ -61,6 +61,15 @@ Answer clip(const UserBox& box, const RTCRay& ray) {
   return clipBySlabs<double, NoPad>(component, box.slabs);
 }
 
+/// What comes with a ray to the callbacks.
+struct Context {
+  RTCIntersectContext embree;  ///< First: that is what Embree knows.
+  bool counts = false;         ///< Boxes, instead of looking for the closest.
+  std::size_t count = 0;
+
+  explicit Context(bool counting = false) : counts(counting) { rtcInitIntersectContext(&embree); }
+};
+
 void intersect(const RTCIntersectFunctionNArguments* args) {
   if (args->valid[0] == 0) {
     return;
@@ -68,7 +77,13 @@ void intersect(const RTCIntersectFunctionNArguments* args) {
   auto* hit = reinterpret_cast<RTCRayHit*>(args->rayhit);
   const UserBox& box = static_cast<const UserBox*>(args->geometryUserPtr)[args->primID];
   const Answer answer = clip(box, hit->ray);
-  if (answer.hit) {
+  if (!answer.hit) {
+    return;
+  }
+  auto* context = reinterpret_cast<Context*>(args->context);
+  if (context->counts) {
+    ++context->count;
+  } else {
     hit->ray.tfar = static_cast<float>(answer.t);
     hit->hit.geomID = args->geomID;
     hit->hit.primID = args->primID;
@@ -97,17 +112,19 @@ class Embree : public SpeedMethod {
   Embree& operator=(const Embree&) = delete;
 
   SpeedAnswer ask(Question question, const Ray& ray) const override {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+    Context context(question == Question::kAll30);
     if (question == Question::kAny30 || question == Question::kSegment) {
       RTCRay r = rtcRay(ray, question == Question::kAny30 ? kRange : kSegmentLength);
-      rtcOccluded1(scene_, &context, &r);
+      rtcOccluded1(scene_, &context.embree, &r);
       return {r.tfar < 0.0F ? 0 : kNoBox};
     }
     RTCRayHit hit = {};
     hit.ray = rtcRay(ray, question == Question::kClosest ? kInf : kRange);
     hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_, &context, &hit);
+    rtcIntersect1(scene_, &context.embree, &hit);
+    if (context.counts) {
+      return allOf(context.count);
+    }
     if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
       return {};
     }
@@ -191,7 +208,7 @@ class EmbreeBoxes final : public Embree {
         [](RTCPointQueryFunctionArguments* args) {
           auto& s = *static_cast<Search*>(args->userPtr);
           const double d = distance(s.segment, s.method.boxes_[args->primID].box).distance;
-          if (d < s.best.distance) {
+          if (d < s.best.value) {
             s.best = {args->primID, d};
             args->query->radius = static_cast<float>((d + s.half_length) * (1.0 + 1e-6));
             return true;
@@ -237,22 +254,13 @@ class EmbreeTriangles final : public Embree {
     commit(geometry);
   }
 
-  bool canAnswer(Question question) const override { return question != Question::kClearance; }
+  bool canAnswer(Question question) const override {
+    return question != Question::kClearance && question != Question::kAll30;
+  }
   std::uint64_t pass(Question question, const std::vector<Ray>& rays) const override {
     return passOf<Embree>(*this, question, rays);
   }
 };
-
-}  // namespace
-
-std::unique_ptr<SpeedMethod> makeEmbreeBoxes(const std::vector<OrientedBox>& boxes) {
-  return std::make_unique<EmbreeBoxes>(boxes);
-}
-std::unique_ptr<SpeedMethod> makeEmbreeTriangles(const std::vector<OrientedBox>& boxes) {
-  return std::make_unique<EmbreeTriangles>(boxes);
-}
-
-namespace {
 
 /// Whether the library that was loaded reports failed assertions: then it was built with them.
 bool hasAssertions() {
@@ -267,12 +275,14 @@ bool hasAssertions() {
 
 }  // namespace
 
-std::vector<std::string> peerNotes() {
+Peer embreePeer() {
   const auto version = rtcGetDeviceProperty(device(), RTC_DEVICE_PROPERTY_VERSION);
   return {"Embree " + std::to_string(version / 10000) + "." + std::to_string(version / 100 % 100) +
-          "." + std::to_string(version % 100) +
-          (hasAssertions() ? ", built with assertions, which cost it time"
-                           : ", built without assertions")};
+              "." + std::to_string(version % 100) +
+              (hasAssertions() ? ", built with assertions, which cost it time"
+                               : ", built without assertions"),
+          {{"Embree, boxes", makeMethod<EmbreeBoxes>},
+           {"Embree, triangles", makeMethod<EmbreeTriangles>}}};
 }
 
 }  // namespace box_query::benchmark

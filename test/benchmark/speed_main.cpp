@@ -25,11 +25,13 @@ The recorded scenes are those of the directory that BOX_QUERY_SHARED names.
 )";
 
 void print(const SpeedRow& row) {
-  std::cout << format(
-      "%-9s %7zu  %-29s %-18s %9.1f  %9.1f %9.1f  %6.2f  %5.1f %% %6zu of %zu\n",
-      row.workload.c_str(), row.boxes, nameOf(row.question), row.method.c_str(),
-      row.timing.ns.median, row.timing.ns.low, row.timing.ns.high, row.timing.ratio.median,
-      100.0 * static_cast<double>(row.hits) / static_cast<double>(row.asked), row.wrong, row.asked);
+  std::cout << format("%-9s %7zu  %-29s %-18s %9.1f  %9.1f %9.1f  %6.2f  %5.1f %% %6zu of %zu\n",
+                      row.workload.c_str(), row.boxes, nameOf(row.question), row.method.c_str(),
+                      row.timing.ns.median, row.timing.ns.low, row.timing.ns.high,
+                      row.timing.ratio.median,
+                      100.0 * static_cast<double>(row.hits) /
+                          static_cast<double>(std::max<std::size_t>(1, row.asked)),
+                      row.wrong, row.asked);
 }
 
 void write(const std::vector<SpeedRow>& rows, std::ostream& out) {
@@ -83,8 +85,9 @@ int main(int argc, char** argv) {
   std::cout << "\nworkload    boxes  question                      method                    ns  "
                "       quartiles   ratio     hits  wrong\n";
   std::vector<SpeedRow> rows;
+  const SpeedOptions options{quick ? 5 : rounds, quick ? 200U : 500U};
   const auto measure = [&](const Workload& workload) {
-    for (const SpeedRow& row : measureSpeed(workload, quick ? 5 : rounds, quick ? 200 : 500)) {
+    for (const SpeedRow& row : measureSpeed(workload, options)) {
       print(row);
       rows.push_back(row);
     }

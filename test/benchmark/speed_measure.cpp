@@ -1,153 +1,130 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "benchmark/speed.h"
-
-#include <box_query/distance.h>
-#include <box_query/intersection.h>
+#include "benchmark/speed_truth.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace box_query::benchmark {
 namespace {
 
-constexpr double kNanometre = 1e-9;
+/// A scan of very many boxes tells nothing that it did not tell before.
+constexpr std::size_t kMostToScan = 2000;
+/// Boxes that answers are compared with, one by one, for a line of the table.
+constexpr std::size_t kMostCompared = 100000000;
 
-OrientedBox resized(OrientedBox box, double by) {
-  box.half_extents = (box.half_extents.array() + by).max(0.0);
-  return box;
-}
-
-double reachOf(Question question) {
-  return question == Question::kClosest   ? std::numeric_limits<double>::infinity()
-         : question == Question::kSegment ? kSegmentLength
-                                          : kRange;
-}
-
-/// Where a ray of unit direction enters a box; +inf if it does not.
-double entryOf(const Ray& ray, const OrientedBox& box) {
-  const Intersection i = findIntersection(ray, box);
-  return i.num_points > 0 ? i.t_enter : std::numeric_limits<double>::infinity();
-}
-
-/// The right answer, one box after the other.
-SpeedAnswer truthOf(Question question, const std::vector<OrientedBox>& boxes, const Ray& ray) {
-  SpeedAnswer truth{kNoBox, std::numeric_limits<double>::infinity()};
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    double d = 0.0;
-    if (question == Question::kClearance) {
-      d = distance(segmentAlong(ray, kPathLength), boxes[i]).distance;
-    } else if (question == Question::kSegment) {
-      d = testIntersection(segmentAlong(ray, kSegmentLength), boxes[i])
-              ? 0.0
-              : std::numeric_limits<double>::infinity();
-    } else {
-      d = findRanges(ray, boxes[i]).enter;
-      d = d <= reachOf(question) ? d : std::numeric_limits<double>::infinity();
-    }
-    if (d < truth.distance) {
-      truth = {i, d};
+/// All methods, each with all scenes of a workload.
+class Measurement {
+ public:
+  Measurement(const Workload& workload, const SpeedOptions& options)
+      : workload_(workload), options_(options), kinds_(speedMethods()), methods_(kinds_.size()) {
+    for (const SpeedScene& scene : workload.scenes) {
+      rays_ += scene.rays.size();
+      boxes_ += scene.boxes.size();
+      for (std::size_t m = 0; m < kinds_.size(); ++m) {
+        if (!isTooSlow(m)) {
+          methods_[m].push_back(kinds_[m].make(scene.boxes));
+        }
+      }
     }
   }
-  return truth;
-}
 
-/// Whether any box would be met if all were larger by so much.
-bool meetsAny(Question question, const std::vector<OrientedBox>& boxes, const Ray& ray, double by) {
-  return std::any_of(boxes.begin(), boxes.end(), [&](const OrientedBox& box) {
-    return entryOf(ray, resized(box, by)) <= reachOf(question) + by;
-  });
-}
-
-/// Of the library: not the right answer. Of others: not right for any boxes that differ from these
-/// by less than a nanometre.
-bool isWrong(Question question, const std::vector<OrientedBox>& boxes, const Ray& ray,
-             const SpeedAnswer& answer, const SpeedAnswer& truth, bool exactly) {
-  if (question == Question::kClearance) {
-    return exactly ? answer.box != truth.box || answer.distance != truth.distance
-                   : std::fabs(answer.distance - truth.distance) > kNanometre;
-  }
-  const bool closest = question != Question::kAny30 && question != Question::kSegment;
-  const bool is_met = answer.box != kNoBox;
-  const bool same = is_met == (truth.box != kNoBox) && (!closest || answer.box == truth.box);
-  if (exactly) {
-    return !same ||
-           (question == Question::kRounded30 && is_met && answer.distance != truth.distance);
-  }
-  if (same) {
-    return false;
-  }
-  if (!is_met) {
-    return meetsAny(question, boxes, ray, -kNanometre);
-  }
-  if (!closest) {
-    return !meetsAny(question, boxes, ray, kNanometre);
-  }
-  const double earliest = entryOf(ray, resized(boxes[answer.box], kNanometre));
-  const double latest = truth.box == kNoBox ? std::numeric_limits<double>::infinity()
-                                            : entryOf(ray, resized(boxes[truth.box], -kNanometre));
-  return !(earliest <= std::min(reachOf(question) + kNanometre, latest));
-}
-
-}  // namespace
-
-std::vector<SpeedRow> measureSpeed(const Workload& workload, int rounds, std::size_t sample) {
-  const std::vector<SpeedMethodKind> kinds = speedMethods();
-  std::vector<std::vector<std::unique_ptr<SpeedMethod>>> methods(kinds.size());
-  std::size_t rays = 0;
-  std::size_t boxes = 0;
-  for (const SpeedScene& scene : workload.scenes) {
-    rays += scene.rays.size();
-    boxes += scene.boxes.size();
-    for (std::size_t m = 0; m < kinds.size(); ++m) {
-      methods[m].push_back(kinds[m].make(scene.boxes));
-    }
-  }
-  std::vector<SpeedRow> rows;
-  for (const Question question : kQuestions) {
-    std::vector<Pass> passes;
+  std::vector<SpeedRow> ask(Question question) const {
     std::vector<std::size_t> who;
-    for (std::size_t m = 0; m < kinds.size(); ++m) {
-      // A scan of very many boxes tells nothing that it did not tell before.
-      const bool too_slow = kinds[m].name == "plain scan" && boxes > 2000 * workload.scenes.size();
-      if (methods[m].front()->canAnswer(question) && !too_slow) {
+    std::vector<Pass> passes;
+    for (std::size_t m = 0; m < kinds_.size(); ++m) {
+      if (!methods_[m].empty() && methods_[m].front()->canAnswer(question)) {
         who.push_back(m);
-        passes.push_back([&, m, question] {
-          std::uint64_t sum = 0;
-          for (std::size_t s = 0; s < workload.scenes.size(); ++s) {
-            sum = 31 * sum + methods[m][s]->pass(question, workload.scenes[s].rays);
+        passes.push_back([this, m, question] { return pass(m, question); });
+      }
+    }
+    std::vector<SpeedRow> rows = time(question, who, passes, rays_);
+    compare(question, who, rows);
+    return rows;
+  }
+
+  /// A box at a time, all that a method does before it can be asked.
+  std::vector<SpeedRow> build() const {
+    std::vector<std::size_t> who;
+    std::vector<Pass> passes;
+    for (std::size_t m = 0; m < kinds_.size(); ++m) {
+      if (kinds_[m].is_built) {
+        who.push_back(m);
+        passes.push_back([this, m] {
+          std::uint64_t made = 0;
+          for (const SpeedScene& scene : workload_.scenes) {
+            made += kinds_[m].make(scene.boxes) != nullptr ? 1 : 0;
           }
-          return sum;
+          return made;
         });
       }
     }
-    const std::vector<Timing> timings = timeSideBySide(passes, rays, rounds, 0);
-    for (std::size_t k = 0; k < who.size(); ++k) {
-      SpeedRow row{workload.name,
-                   boxes / workload.scenes.size(),
-                   question,
-                   kinds[who[k]].name,
-                   timings[k],
-                   0,
-                   0,
-                   0};
-      rows.push_back(row);
+    return time(Question::kBuild, who, passes, boxes_);
+  }
+
+ private:
+  std::size_t boxesOfAScene() const { return boxes_ / workload_.scenes.size(); }
+  bool isTooSlow(std::size_t m) const {
+    return kinds_[m].name == "plain scan" && boxesOfAScene() > kMostToScan;
+  }
+
+  std::uint64_t pass(std::size_t m, Question question) const {
+    std::uint64_t sum = 0;
+    for (std::size_t s = 0; s < workload_.scenes.size(); ++s) {
+      sum = 31 * sum + methods_[m][s]->pass(question, workload_.scenes[s].rays);
     }
-    std::size_t left = sample;
-    for (std::size_t s = 0; s < workload.scenes.size() && left > 0; ++s) {
-      const SpeedScene& scene = workload.scenes[s];
-      const std::size_t here = std::min(left, sample / workload.scenes.size() + 1);
+    return sum;
+  }
+
+  std::vector<SpeedRow> time(Question question, const std::vector<std::size_t>& who,
+                             const std::vector<Pass>& passes, std::size_t queries) const {
+    const std::vector<Timing> timings = timeSideBySide(passes, queries, options_.rounds, 0);
+    std::vector<SpeedRow> rows;
+    for (std::size_t k = 0; k < who.size(); ++k) {
+      rows.push_back({workload_.name, boxesOfAScene(), question, kinds_[who[k]].name, timings[k]});
+    }
+    return rows;
+  }
+
+  void compare(Question question, const std::vector<std::size_t>& who,
+               std::vector<SpeedRow>& rows) const {
+    const std::size_t scenes = workload_.scenes.size();
+    const std::size_t all =
+        std::max<std::size_t>(20, std::min(options_.sample, kMostCompared / boxesOfAScene()));
+    std::size_t left = all;
+    for (std::size_t s = 0; s < scenes && left > 0; ++s) {
+      const SpeedScene& scene = workload_.scenes[s];
+      const std::size_t here = std::min({left, all / scenes + 1, scene.rays.size()});
       left -= here;
-      for (std::size_t i = 0; i < here && i < scene.rays.size(); ++i) {
-        const SpeedAnswer truth = truthOf(question, scene.boxes, scene.rays[i]);
+      for (std::size_t i = 0; i < here; ++i) {
+        const Ray& ray = scene.rays[i];
+        const SpeedAnswer truth = truthOf(question, scene.boxes, ray);
         for (std::size_t k = 0; k < who.size(); ++k) {
-          SpeedRow& row = rows[rows.size() - who.size() + k];
-          const SpeedAnswer answer = methods[who[k]][s]->ask(question, scene.rays[i]);
-          ++row.asked;
-          row.hits += truth.box != kNoBox ? 1 : 0;
-          row.wrong += isWrong(question, scene.boxes, scene.rays[i], answer, truth, who[k] == 0);
+          const SpeedAnswer answer = methods_[who[k]][s]->ask(question, ray);
+          ++rows[k].asked;
+          rows[k].hits += truth.box != kNoBox ? 1 : 0;
+          rows[k].wrong += isWrong(question, scene.boxes, ray, answer, truth, who[k] == 0) ? 1 : 0;
         }
       }
+    }
+  }
+
+  const Workload& workload_;
+  const SpeedOptions& options_;
+  std::vector<SpeedMethodKind> kinds_;
+  std::vector<std::vector<std::unique_ptr<SpeedMethod>>> methods_;
+  std::size_t rays_ = 0;
+  std::size_t boxes_ = 0;
+};
+
+}  // namespace
+
+std::vector<SpeedRow> measureSpeed(const Workload& workload, const SpeedOptions& options) {
+  const Measurement measurement(workload, options);
+  std::vector<SpeedRow> rows;
+  for (const Question question : kQuestions) {
+    for (SpeedRow& row :
+         question == Question::kBuild ? measurement.build() : measurement.ask(question)) {
+      rows.push_back(std::move(row));
     }
   }
   return rows;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "benchmark/methods_slab.h"
-#include "benchmark/speed.h"
+#include "benchmark/speed_peers.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace box_query::benchmark {
@@ -27,12 +28,16 @@ class Ours final : public SpeedMethod {
       }
       case Question::kAny30:
         return {scene_.castAny(ray, kRange) ? 0 : kNoBox};
+      case Question::kAll30:
+        return allOf(scene_.findAll(segmentAlong(ray, kRange)).size());
       case Question::kSegment:
         return {scene_.isClear(segmentAlong(ray, kSegmentLength), 0.0) ? kNoBox : 0};
       case Question::kClearance: {
         const Clearance clearance = scene_.clearance(segmentAlong(ray, kPathLength));
         return {clearance.box, clearance.distance};
       }
+      case Question::kBuild:
+        break;
     }
     return {};
   }
@@ -56,11 +61,16 @@ class Scan final : public SpeedMethod {
   bool canAnswer(Question question) const override { return question != Question::kClearance; }
   SpeedAnswer ask(Question question, const Ray& ray) const override {
     const bool any = question == Question::kAny30 || question == Question::kSegment;
-    const double end = question == Question::kClosest   ? kInf
-                       : question == Question::kSegment ? kSegmentLength
-                                                        : kRange;
     SlabComponent<double> component = slabComponent<double>(ray);
-    component.t_max = end;
+    component.t_max = question == Question::kClosest   ? kInf
+                      : question == Question::kSegment ? kSegmentLength
+                                                       : kRange;
+    if (question == Question::kAll30) {
+      return allOf(static_cast<std::size_t>(
+          std::count_if(boxes_.begin(), boxes_.end(), [&](const SlabBox<double>& box) {
+            return clipBySlabs<double, NoPad>(component, box).hit;
+          })));
+    }
     SpeedAnswer result;
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
       const Answer answer = clipBySlabs<double, NoPad>(component, boxes_[i]);
@@ -82,11 +92,6 @@ class Scan final : public SpeedMethod {
   std::vector<SlabBox<double>> boxes_;
 };
 
-template <typename Method>
-std::unique_ptr<SpeedMethod> make(const std::vector<OrientedBox>& boxes) {
-  return std::make_unique<Method>(boxes);
-}
-
 }  // namespace
 
 const char* nameOf(Question question) {
@@ -99,21 +104,33 @@ const char* nameOf(Question question) {
       return "closest, 30 m, rounded range";
     case Question::kAny30:
       return "any, 30 m";
+    case Question::kAll30:
+      return "all, 30 m";
     case Question::kSegment:
       return "segment of 10 m";
     case Question::kClearance:
       return "clearance of 2 m";
+    case Question::kBuild:
+      return "build, a box";
   }
   return "";
 }
 
 std::vector<SpeedMethodKind> speedMethods() {
-  std::vector<SpeedMethodKind> methods = {{"box_query", make<Ours>}, {"plain scan", make<Scan>}};
-  if (makeEmbreeBoxes({}) != nullptr) {
-    methods.push_back({"Embree, boxes", makeEmbreeBoxes});
-    methods.push_back({"Embree, triangles", makeEmbreeTriangles});
+  std::vector<SpeedMethodKind> methods = {{"box_query", makeMethod<Ours>},
+                                          {"plain scan", makeMethod<Scan>, false}};
+  for (const Peer& peer : peers()) {
+    methods.insert(methods.end(), peer.methods.begin(), peer.methods.end());
   }
   return methods;
+}
+
+std::vector<std::string> peerNotes() {
+  std::vector<std::string> notes;
+  for (const Peer& peer : peers()) {
+    notes.push_back(peer.note);
+  }
+  return notes;
 }
 
 }  // namespace box_query::benchmark

@@ -12,7 +12,11 @@
 namespace box_query::benchmark {
 namespace {
 
+/// Short turns: the machine is in the same state in those that are compared.
 constexpr double kTurnNs = 2e5;
+/// A pass that takes so long is not made warm before it is timed, and has fewer turns.
+constexpr double kLongNs = 5e7;
+constexpr double kAllTurnsNs = 1e9;
 
 /// Of the wall: cheap enough for a single query.
 double now() {
@@ -32,6 +36,62 @@ void keep(std::uint64_t value) {
   asm volatile("" : : "r"(value) : "memory");
 }
 
+/// One contender: how often it is passed in a turn, how many turns it has, and what they took.
+class Contender {
+ public:
+  Contender(const Pass& pass, std::size_t queries, int rounds)
+      : pass_(pass), queries_(static_cast<double>(queries)) {
+    double start = threadTime();
+    sum_ = pass_();
+    double took = threadTime() - start;
+    if (took < kLongNs) {
+      start = threadTime();
+      check();
+      took = threadTime() - start;
+    }
+    is_long_ = took >= kLongNs;
+    passes_ = std::max(1, static_cast<int>(kTurnNs / std::max(1.0, took)));
+    rounds_ = std::max(1, std::min(rounds, static_cast<int>(kAllTurnsNs / std::max(1.0, took))));
+  }
+
+  void turn(int round) {
+    if (round >= rounds_) {
+      return;
+    }
+    if (!is_long_) {
+      check();
+    }
+    const double start = threadTime();
+    for (int pass = 0; pass < passes_; ++pass) {
+      check();
+    }
+    ns_.push_back((threadTime() - start) / (passes_ * queries_));
+  }
+
+  Timing timing(const Contender& base) const {
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < std::min(ns_.size(), base.ns_.size()); ++i) {
+      ratios.push_back(ns_[i] / base.ns_[i]);
+    }
+    return {spreadOf(ns_), spreadOf(ratios), sum_};
+  }
+
+ private:
+  void check() const {
+    if (pass_() != sum_) {
+      throw std::runtime_error("a contender's answers differ from pass to pass");
+    }
+  }
+
+  const Pass& pass_;
+  double queries_;
+  std::uint64_t sum_;
+  bool is_long_;
+  int passes_;
+  int rounds_;
+  std::vector<double> ns_;
+};
+
 }  // namespace
 
 double quantile(std::vector<double> values, double share) {
@@ -48,38 +108,20 @@ Spread spreadOf(std::vector<double> values) {
   return {quantile(values, 0.5), quantile(values, 0.25), quantile(values, 0.75)};
 }
 
-std::vector<Timing> timeSideBySide(const std::vector<Pass>& contenders, std::size_t queries,
-                                   int rounds, std::size_t base) {
-  const std::size_t count = contenders.size();
-  std::vector<Timing> timings(count);
-  std::vector<int> passes(count);
-  for (std::size_t c = 0; c < count; ++c) {
-    timings[c].sum = contenders[c]();
-    const double start = threadTime();
-    keep(contenders[c]());
-    passes[c] = std::max(1, static_cast<int>(kTurnNs / std::max(1.0, threadTime() - start)));
+std::vector<Timing> timeSideBySide(const std::vector<Pass>& passes, std::size_t queries, int rounds,
+                                   std::size_t base) {
+  std::vector<Contender> contenders;
+  for (const Pass& pass : passes) {
+    contenders.emplace_back(pass, queries, rounds);
   }
-  std::vector<std::vector<double>> ns(count);
   for (int round = 0; round < rounds; ++round) {
-    for (std::size_t turn = 0; turn < count; ++turn) {
-      const std::size_t c = (turn + static_cast<std::size_t>(round)) % count;
-      if (contenders[c]() != timings[c].sum) {
-        throw std::runtime_error("a contender's answers differ from pass to pass");
-      }
-      const double start = threadTime();
-      for (int pass = 0; pass < passes[c]; ++pass) {
-        keep(contenders[c]());
-      }
-      ns[c].push_back((threadTime() - start) / (passes[c] * static_cast<double>(queries)));
+    for (std::size_t turn = 0; turn < contenders.size(); ++turn) {
+      contenders[(turn + static_cast<std::size_t>(round)) % contenders.size()].turn(round);
     }
   }
-  for (std::size_t c = 0; c < count; ++c) {
-    std::vector<double> ratios;
-    for (std::size_t round = 0; round < ns[c].size(); ++round) {
-      ratios.push_back(ns[c][round] / ns[base][round]);
-    }
-    timings[c].ns = spreadOf(ns[c]);
-    timings[c].ratio = spreadOf(ratios);
+  std::vector<Timing> timings;
+  for (const Contender& contender : contenders) {
+    timings.push_back(contender.timing(contenders[base]));
   }
   return timings;
 }
