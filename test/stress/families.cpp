@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stress/families.h"
 
+#include "stress/limits.h"
+#include "stress/near_axes.h"
 #include "stress/random.h"
 
 #include <algorithm>
 
 namespace box_query::stress {
 namespace {
-
-Vector3 scaled(const Vector3& v, int power) {
-  return {std::ldexp(v[0], power), std::ldexp(v[1], power), std::ldexp(v[2], power)};
-}
 
 Vector3 ordinarySize(Random& random) {
   return random.uniformVector(0.1, 2.0);
@@ -59,15 +57,8 @@ Sample exactTouch(Random& random, bool oriented) {
   const Target target = makeTarget(oriented, center, rotation, random.halves(2).cwiseAbs());
   Sample sample{target.box(), random.halves(3), random.halves(2), random.halves(3)};
   const int power = random.chance(0.5) ? 0 : random.between(-30, 30);
-  sample.origin = scaled(sample.origin, power);
-  sample.end = scaled(sample.end, power);
+  scalePlaces(sample, power);
   sample.direction = scaled(sample.direction, power);
-  if (auto* box = std::get_if<AlignedBox>(&sample.box)) {
-    *box = {scaled(box->min, power), scaled(box->max, power)};
-  } else if (auto* turned = std::get_if<OrientedBox>(&sample.box)) {
-    turned->center = scaled(turned->center, power);
-    turned->half_extents = scaled(turned->half_extents, power);
-  }
   return sample;
 }
 
@@ -134,30 +125,10 @@ Sample directions(Random& random, bool oriented) {
 Sample denormals(Random& random, bool oriented) {
   Sample sample = random.chance(0.5) ? exactTouch(random, oriented) : grazing(random, oriented);
   const int power = random.between(-1074, -1000);
-  sample.origin = scaled(sample.origin, power);
-  sample.end = scaled(sample.end, power);
-  if (auto* box = std::get_if<AlignedBox>(&sample.box)) {
-    *box = {scaled(box->min, power), scaled(box->max, power)};
-  } else if (auto* turned = std::get_if<OrientedBox>(&sample.box)) {
-    turned->center = scaled(turned->center, power);
-    turned->half_extents = scaled(turned->half_extents, power);
-  }
+  scalePlaces(sample, power);
   sample.direction =
       scaled(sample.direction, random.chance(0.5) ? power : random.between(-1074, 0));
   return sample;
-}
-
-/// One of the 24 rotations that permute the axes, not of unit length.
-Quaternion quarterTurns(Random& random) {
-  static const double kQuaternions[5][4] = {
-      {1, 0, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0}, {0, 1, 1, 0}, {1, 1, 1, 1}};
-  const auto& row = kQuaternions[random.below(5)];
-  const auto [i, j, k] = random.axes();
-  Vector3 u;
-  u[i] = random.sign() * row[1];
-  u[j] = random.sign() * row[2];
-  u[k] = random.sign() * row[3];
-  return {row[0], u[0], u[1], u[2]};
 }
 
 Target turnedTarget(Random& random, bool oriented, const Vector3& center, const Vector3& size) {
@@ -261,11 +232,6 @@ Sample roundedAxis(Random& random, bool oriented) {
   return aim(random, target, contact, random.magnitude(0, 12), 0);
 }
 
-/// A multiple of 0.1 as doubles have it: as people write shelves down.
-double decimal(Random& random, int limit) {
-  return static_cast<double>(random.between(-10 * limit, 10 * limit)) / 10.0;
-}
-
 /// Boards on decimal coordinates, rays in the planes of their faces.
 Sample shelves(Random& random, bool oriented) {
   const Vector3 center{decimal(random, 3), decimal(random, 3), decimal(random, 3)};
@@ -347,6 +313,10 @@ const Family kFamilies[] = {
     {"rounded_axis", roundedAxis},
     {"shelves", shelves},
     {"whole_range", wholeRange},
+    {"nearly_aligned", nearlyAligned},
+    {"turned_shelves", turnedShelves},
+    {"hardly_sloping", hardlySloping},
+    {"stage_limits", stageLimits},
 };
 
 Vector3 finite(const Vector3& v) {

@@ -158,7 +158,8 @@ void run(std::uint64_t count) {
   for (std::size_t family = 0; family < sceneFamilyNames().size(); ++family) {
     Hash questions;
     Hash answers;
-    for (std::uint64_t index = 0; index < count / 40 + 1; ++index) {
+    const std::uint64_t scenes = sceneCount(family, count * sceneFamilyNames().size() / 40);
+    for (std::uint64_t index = 0; index < scenes; ++index) {
       const SceneSample scene = makeScene(family, 9, index);
       for (const Box& box : scene.boxes) {
         questions.add(box);

@@ -2,6 +2,8 @@
 #include "stress/scene_families.h"
 
 #include "stress/families.h"
+#include "stress/limits.h"
+#include "stress/near_axes.h"
 #include "stress/random.h"
 
 #include <utility>
@@ -193,15 +195,73 @@ SceneSample hostilePairs(Random& random) {
   return scene;
 }
 
+/// A shelf that stands askew: at most of its planes many boxes tie, or nearly.
+SceneSample turnedShelf(Random& random) {
+  SceneSample scene;
+  const TurnedShelf shelf(random, random.chance(0.8));
+  const int columns = random.between(1, 8);
+  const int rows = random.between(1, 2);
+  const int layers = random.between(1, 4);
+  const auto cellOf = [&](int i) {
+    return Vector3(i % columns, i / columns % rows, i / (columns * rows));
+  };
+  const int count = columns * rows * layers;
+  for (int i = 0; i < count; ++i) {
+    if (i == 0 || random.chance(0.9)) {
+      scene.boxes.push_back(shelf.boxAt(cellOf(i)).box());
+    }
+  }
+  for (int i = 0; i < 6; ++i) {
+    scene.components.push_back(shelf.along(random, cellOf(random.below(count))));
+  }
+  return scene;
+}
+
+/// Thousands of boxes on a lattice, each with its mirror image: what is entered first, and what is
+/// nearest, is so with others at the far end of the scene, of far higher numbers.
+SceneSample large(Random& random) {
+  SceneSample scene;
+  const int pairs = random.between(500, 2500);
+  const bool oriented = random.chance(0.5);
+  const Random start(random.bits(), 0, 0);
+  for (const double side : {1.0, -1.0}) {
+    Random same = start;
+    for (int i = 0; i < pairs; ++i) {
+      Vector3 center = same.halves(40);
+      Vector3 size = same.halves(1).cwiseAbs();
+      if (same.chance(0.04)) {
+        size[same.between(1, 2)] = 30.0;  // a board: its front is that of others
+      }
+      center[1] = side * (std::fabs(center[1]) + 1.0);
+      const Quaternion turn(1.0, 0.0, 0.0, same.chance(0.2) ? side : 0.0);
+      scene.boxes.push_back(makeTarget(oriented, center, turn, size).box());
+    }
+  }
+  for (int i = 0; i < 6; ++i) {
+    Sample sample{scene.boxes[0], random.halves(40), random.halves(2), random.halves(40)};
+    // In the plane of the mirror, where ends of long boards meet, and elsewhere.
+    if (random.chance(0.7)) {
+      sample.origin[1] = 0.0;
+      sample.direction[1] = 0.0;
+      sample.end[1] = 0.0;
+    }
+    scene.components.push_back(sample);
+  }
+  return scene;
+}
+
 struct SceneFamily {
   const char* name;
   SceneSample (*make)(Random& random);
+  std::uint64_t worth;  ///< how many scenes of others take as long
 };
 
 const SceneFamily kFamilies[] = {
-    {"scene_uniform", uniform},       {"scene_shelves", shelves},    {"scene_lattice", lattice},
-    {"scene_duplicates", duplicates}, {"scene_near_ties", nearTies}, {"scene_far_nest", farNest},
-    {"scene_hostile", hostilePairs},
+    {"scene_uniform", uniform, 1},      {"scene_shelves", shelves, 1},
+    {"scene_lattice", lattice, 1},      {"scene_duplicates", duplicates, 1},
+    {"scene_near_ties", nearTies, 1},   {"scene_far_nest", farNest, 1},
+    {"scene_hostile", hostilePairs, 1}, {"scene_turned_shelf", turnedShelf, 1},
+    {"scene_limits", sceneLimits, 1},   {"scene_large", large, 40},
 };
 
 }  // namespace
@@ -215,6 +275,11 @@ const std::vector<std::string>& sceneFamilyNames() {
     return result;
   }();
   return names;
+}
+
+std::uint64_t sceneCount(std::size_t family, std::uint64_t scenes) {
+  const std::uint64_t share = sceneFamilyNames().size() * kFamilies[family].worth;
+  return (scenes + share - 1) / share;
 }
 
 SceneSample makeScene(std::size_t family, std::uint64_t seed, std::uint64_t index) {

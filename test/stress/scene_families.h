@@ -19,6 +19,10 @@ struct SceneSample {
 
 const std::vector<std::string>& sceneFamilyNames();
 
+/// How many scenes of a family there are among `scenes` of all: as many as of others, but fewer
+/// where one has thousands of boxes.
+std::uint64_t sceneCount(std::size_t family, std::uint64_t scenes);
+
 SceneSample makeScene(std::size_t family, std::uint64_t seed, std::uint64_t index);
 
 }  // namespace box_query::stress

@@ -110,15 +110,17 @@ class Report {
  public:
   explicit Report(const Options& options) : options_(options) {}
 
-  template <typename Run>
-  void add(const char* prefix, const std::vector<std::string>& names, std::uint64_t count,
+  /// @param count count(family): how many samples or scenes of it
+  template <typename Count, typename Run>
+  void add(const char* prefix, const std::vector<std::string>& names, const Count& count,
            const Run& run) {
-    for (std::size_t family = 0; family < names.size() && count > 0; ++family) {
-      if (names[family].compare(0, options_.family.size(), options_.family) != 0) {
+    for (std::size_t family = 0; family < names.size(); ++family) {
+      if (count(family) == 0 ||
+          names[family].compare(0, options_.family.size(), options_.family) != 0) {
         continue;
       }
       const auto start = std::chrono::steady_clock::now();
-      const Tally tally = run(family, options_.seed, count, options_.threads);
+      const Tally tally = run(family, options_.seed, count(family), options_.threads);
       const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
       printRow(prefix + names[family], tally, seconds.count());
       sum_.merge(tally);
@@ -147,10 +149,11 @@ class Report {
 int run(const Options& options) {
   Report report(options);
   printHeader();
-  report.add("", familyNames(), options.per_family, runIntersections);
-  report.add("distance ", familyNames(), options.per_family, runDistances);
-  const std::size_t families = sceneFamilyNames().size();
-  report.add("", sceneFamilyNames(), (options.scenes + families - 1) / families, runScenes);
+  const auto per_family = [&](std::size_t) { return options.per_family; };
+  report.add("", familyNames(), per_family, runIntersections);
+  report.add("distance ", familyNames(), per_family, runDistances);
+  const auto scenes = [&](std::size_t family) { return sceneCount(family, options.scenes); };
+  report.add("", sceneFamilyNames(), scenes, runScenes);
   return report.finish();
 }
 
