@@ -43,7 +43,7 @@ class Services:
     def wait_until_complete(self):
         """Returns an empty string, or what the scene lacks after 30 s."""
         for _ in range(300):
-            scene = self.get_scene(0)
+            scene = self.get_scene()
             if scene.complete:
                 return ''
             rospy.rostime.wallsleep(0.1)
@@ -90,7 +90,7 @@ def ask_rays(ask, table):
 
     # The cart is where the snapshot says that it is; its front is half its length before its center.
     ray = ask.cast_ray(CastRayRequest(header=frame('map'), origin=Point(0, -0.625, 0.25), direction=Vector3(1, 0, 0)))
-    scene = ask.get_scene(ray.scene_id)
+    scene = ask.get_scene(scene_id=ray.scene_id)
     cart = scene.box_labels.index('cart_b')
     front = Fraction(scene.poses[cart].position.x) - Fraction(scene.sizes[cart].x) / 2
     table.add('What comes in the right lane?', ray, '%.12g m (scene %d)' % (ray.range, ray.scene_id),

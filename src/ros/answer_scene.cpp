@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/answers.h"
+#include "ros/box_filter.h"
 #include "ros/named_boxes.h"
 
 namespace box_query {
@@ -15,9 +16,18 @@ OrientedBox oriented(const AlignedBox& box) {
 
 }  // namespace
 
-void answer(const Snapshot& snapshot, const ros::Time& now, GetSceneResponse& response) {
+void check(const GetSceneRequest& request) {
+  check(BoxFilter(request));
+}
+
+void answer(const GetSceneRequest& request, const Snapshot& snapshot, const ros::Time& now,
+            GetSceneResponse& response) {
   describeScene(snapshot, now, response);
+  const auto mask = maskOf(BoxFilter(request), snapshot);
   for (std::size_t i = 0; i < snapshot.names.size(); ++i) {
+    if (mask && !(*mask)[i]) {
+      continue;
+    }
     const OrientedBox box =
         std::visit([](const auto& solid) { return oriented(solid); }, snapshot.scene.boxes()[i]);
     geometry_msgs::Pose pose;

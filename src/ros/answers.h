@@ -28,6 +28,7 @@ void check(const CastRaysRequest& request, std::size_t max_queries);
 void check(const CheckSegmentRequest& request, std::size_t max_queries);
 void check(const CheckSegmentsRequest& request, std::size_t max_queries);
 void check(const FindIntersectionsRequest& request, std::size_t max_queries);
+void check(const GetSceneRequest& request);
 
 /// What a request is answered from.
 struct Context {
@@ -49,7 +50,8 @@ void answer(const CheckSegmentRequest& request, Context& context, CheckSegmentRe
 void answer(const CheckSegmentsRequest& request, Context& context, CheckSegmentsResponse& response);
 void answer(const FindIntersectionsRequest& request, Context& context,
             FindIntersectionsResponse& response);
-void answer(const Snapshot& snapshot, const ros::Time& now, GetSceneResponse& response);
+void answer(const GetSceneRequest& request, const Snapshot& snapshot, const ros::Time& now,
+            GetSceneResponse& response);
 
 /// A response that answers nothing: every number undefined, every array empty.
 template <class Response>

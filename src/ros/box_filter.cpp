@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/box_filter.h"
 
-#include <algorithm>
-#include <limits>
+#include "ros/name_order.h"
+
+#include <iterator>
 #include <set>
 #include <stdexcept>
-#include <tuple>
-#include <utility>
+#include <string_view>
 
 #include <ros/names.h>
 
@@ -14,56 +14,12 @@ namespace box_query {
 namespace {
 
 using Names = std::vector<BoxName>;
+using Strings = std::vector<std::string>;
 
-BoxName lowestOf(const std::string& topic, const std::string& ns) {
-  return {topic, ns, std::numeric_limits<std::int64_t>::min(), ""};
-}
-BoxName highestOf(const std::string& topic, const std::string& ns) {
-  return {topic, ns, std::numeric_limits<std::int64_t>::max(), ""};
-}
-
-/// The names within [lowest, highest] in the order (topic, ns, id), in which they are sorted.
-std::pair<Names::const_iterator, Names::const_iterator> rangeOf(const Names& names,
-                                                                const BoxName& lowest,
-                                                                const BoxName& highest) {
-  const auto before = [](const BoxName& a, const BoxName& b) {
-    return std::tie(a.topic, a.ns, a.id) < std::tie(b.topic, b.ns, b.id);
-  };
-  const auto begin = std::lower_bound(names.begin(), names.end(), lowest, before);
-  return {begin, std::upper_bound(begin, names.end(), highest, before)};
-}
-
-void setRange(const Names& names, const BoxName& lowest, const BoxName& highest, bool look,
-              BoxMask& mask) {
-  const auto [begin, end] = rangeOf(names, lowest, highest);
-  for (auto name = begin; name != end; ++name) {
-    mask.set(static_cast<std::size_t>(name - names.begin()), look);
-  }
-}
-
-std::vector<std::string> topicsOf(const Names& names) {
-  std::vector<std::string> topics;
-  auto name = names.begin();
-  while (name != names.end()) {
-    topics.push_back(name->topic);
-    name = std::upper_bound(
-        name, names.end(), topics.back(),
-        [](const std::string& topic, const BoxName& other) { return topic < other.topic; });
-  }
-  return topics;
-}
-
-std::set<std::string> namespacesOf(const Names& names) {
-  std::set<std::string> namespaces;
-  auto name = names.begin();
-  while (name != names.end()) {
-    namespaces.insert(name->ns);
-    name =
-        std::upper_bound(name, names.end(), *name, [](const BoxName& last, const BoxName& other) {
-          return std::tie(last.topic, last.ns) < std::tie(other.topic, other.ns);
-        });
-  }
-  return namespaces;
+std::string lengthsOf(const char* first, std::size_t first_length, const char* second,
+                      std::size_t second_length) {
+  return std::string(first) + " has " + std::to_string(first_length) + " elements and " + second +
+         " " + std::to_string(second_length) + ": ";
 }
 
 /// Answers name topics in full; a request may name them as the node's parameter does.
@@ -72,78 +28,235 @@ std::string resolved(const std::string& topic) {
   return ros::names::validate(topic, error) ? ros::names::resolve(topic) : topic;
 }
 
-}  // namespace
-
-void check(const BoxFilter& filter) {
-  const std::size_t count = filter.ignore_ids.size();
-  if (filter.ignore_namespaces.size() != count) {
-    throw std::invalid_argument("ignore_namespaces has " +
-                                std::to_string(filter.ignore_namespaces.size()) +
-                                " elements and ignore_ids " + std::to_string(count) +
-                                ": name every ignored box by its namespace and its id");
-  }
-  if (!filter.ignore_topics.empty() && filter.ignore_topics.size() != count) {
-    throw std::invalid_argument("ignore_topics has " + std::to_string(filter.ignore_topics.size()) +
-                                " elements and ignore_ids " + std::to_string(count) +
-                                ": leave it empty (any topic), or give one topic a box");
+void setRange(const IndexRange& range, bool look, BoxMask& mask) {
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    mask.set(i, look);
   }
 }
 
-std::string unknownNamespace(const BoxFilter& filter, const Snapshot& snapshot) {
-  if (filter.namespaces.empty()) {
-    return "";
+/// Of the chosen topics and namespaces.
+BoxMask chosen(const BoxFilter& filter, const Names& names, const Strings& topics) {
+  if (filter.topics.empty() && filter.namespaces.empty()) {
+    return BoxMask(names.size());
   }
-  const std::vector<std::string> topics = topicsOf(snapshot.names);
+  BoxMask mask(names.size(), false);
+  const auto choose = [&](const std::string& topic) {
+    if (filter.namespaces.empty()) {
+      setRange(rangeOf(names, {topic}), true, mask);
+    }
+    for (const std::string& ns : filter.namespaces) {
+      setRange(rangeOf(names, {topic, &ns}), true, mask);
+    }
+  };
+  if (filter.topics.empty()) {
+    std::for_each(topics.begin(), topics.end(), choose);
+  }
+  for (const std::string& topic : filter.topics) {
+    choose(resolved(topic));
+  }
+  return mask;
+}
+
+/// A hash table would take several times as long for many names.
+std::vector<std::string_view> sorted(const Strings& names) {
+  std::vector<std::string_view> views(names.begin(), names.end());
+  std::sort(views.begin(), views.end());
+  return views;
+}
+
+void dropOtherLabels(const Strings& labels, const Names& names, BoxMask& mask) {
+  const std::vector<std::string_view> wanted = sorted(labels);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (mask[i] && !std::binary_search(wanted.begin(), wanted.end(), names[i].label)) {
+      mask.set(i, false);
+    }
+  }
+}
+
+/// Calls visit(range) for the boxes of ignored name `i`, once a topic. @return whether there are
+/// any
+template <class Visit>
+bool visitIgnored(const BoxFilter& filter, std::size_t i, const Names& names, const Strings& topics,
+                  Visit&& visit) {
+  bool any = false;
+  const auto visitIn = [&](const std::string& topic) {
+    const IndexRange range = rangeOf(
+        names, {topic, filter.ignore_namespaces.empty() ? nullptr : &filter.ignore_namespaces[i],
+                filter.ignore_ids.empty() ? nullptr : &filter.ignore_ids[i]});
+    any = any || range.begin != range.end;
+    visit(range);
+  };
+  if (filter.ignore_topics.empty()) {
+    std::for_each(topics.begin(), topics.end(), visitIn);
+  } else {
+    visitIn(resolved(filter.ignore_topics[i]));
+  }
+  return any;
+}
+
+/// The first few of some names, each once.
+class Listing {
+ public:
+  void add(const std::string& name) {
+    if (names_.size() <= kListed || name < *names_.rbegin()) {
+      names_.insert(name);
+    }
+    if (names_.size() > kListed + 1) {
+      names_.erase(std::prev(names_.end()));
+    }
+  }
+  std::string text() const {
+    std::string text = names_.empty() ? " no boxes" : "";
+    std::size_t listed = 0;
+    for (auto name = names_.begin(); name != names_.end() && listed < kListed; ++name, ++listed) {
+      text += (listed > 0 ? ", '" : " '") + std::string(*name) + "'";
+    }
+    return text + (names_.size() > kListed ? " and more" : "");
+  }
+  bool empty() const { return names_.empty(); }
+
+ private:
+  static constexpr std::size_t kListed = 10;
+  std::set<std::string_view> names_;  // one more than are listed, at most
+};
+
+std::string noBoxHas(const char* what, const std::string& name, const Listing& known) {
+  return std::string("No box has the ") + what + " '" + name + "': there are" + known.text() +
+         (known.empty() ? "." : ". Correct it, unless none is meant to be there now.");
+}
+
+std::string unknownTopic(const BoxFilter& filter, const Snapshot& snapshot) {
+  Listing known;
+  std::set<std::string_view> topics;
+  for (const TopicState& topic : snapshot.topics) {
+    topics.insert(topic.parameters.topic);
+    known.add(topic.parameters.topic);
+  }
+  for (const std::string& topic : filter.topics) {
+    if (topics.count(resolved(topic)) == 0) {
+      return "The node does not listen to the topic '" + topic + "': there are" + known.text() +
+             ". Correct it.";
+    }
+  }
+  return "";
+}
+
+std::string unknownNamespace(const BoxFilter& filter, const Names& names, const Strings& topics) {
   const auto unknown =
       std::find_if(filter.namespaces.begin(), filter.namespaces.end(), [&](const std::string& ns) {
         return std::none_of(topics.begin(), topics.end(), [&](const std::string& topic) {
-          const auto range = rangeOf(snapshot.names, lowestOf(topic, ns), highestOf(topic, ns));
-          return range.first != range.second;
+          const IndexRange range = rangeOf(names, {topic, &ns});
+          return range.begin != range.end;
         });
       });
   if (unknown == filter.namespaces.end()) {
     return "";
   }
-  const std::set<std::string> known = namespacesOf(snapshot.names);
-  constexpr std::size_t kListed = 10;
-  std::string list;
-  std::size_t listed = 0;
-  for (auto ns = known.begin(); ns != known.end() && listed < kListed; ++ns, ++listed) {
-    list += (listed > 0 ? ", '" : "'") + *ns + "'";
+  Listing known;
+  for (std::size_t i = 0; i < names.size();
+       i = rangeOf(names, {names[i].topic, &names[i].ns}).end) {
+    known.add(names[i].ns);
   }
-  if (known.size() > listed) {
-    list += " and " + std::to_string(known.size() - listed) + " more";
+  return noBoxHas("namespace", *unknown, known);
+}
+
+std::string unknownLabel(const BoxFilter& filter, const Names& names) {
+  const std::vector<std::string_view> labels = sorted(filter.labels);
+  std::vector<bool> seen(labels.size());
+  const auto placeOf = [&labels](const std::string& label) {
+    return static_cast<std::size_t>(std::lower_bound(labels.begin(), labels.end(), label) -
+                                    labels.begin());
+  };
+  for (const BoxName& name : names) {
+    const std::size_t place = placeOf(name.label);
+    if (place < labels.size() && labels[place] == name.label) {
+      seen[place] = true;
+    }
   }
-  return "No box has the namespace '" + *unknown + "': " +
-         (known.empty()
-              ? "there are no boxes."
-              : "there are " + list + ". Correct it, unless none is meant to be there now.");
+  const auto unknown =
+      std::find_if(filter.labels.begin(), filter.labels.end(),
+                   [&](const std::string& label) { return !seen[placeOf(label)]; });
+  if (unknown == filter.labels.end()) {
+    return "";
+  }
+  Listing known;
+  for (const BoxName& name : names) {
+    known.add(name.label);
+  }
+  return noBoxHas("label", *unknown, known);
+}
+
+std::string unknownIgnored(const BoxFilter& filter, const Names& names, const Strings& topics) {
+  const auto nothing = [](const IndexRange&) {};
+  std::size_t i = 0;
+  while (i < filter.ignored() && visitIgnored(filter, i, names, topics, nothing)) {
+    ++i;
+  }
+  if (i == filter.ignored()) {
+    return "";
+  }
+  std::string name;
+  const auto append = [&name](const char* what, const std::string& value) {
+    name += (name.empty() ? "" : ", ") + std::string(what) + " " + value;
+  };
+  if (!filter.ignore_topics.empty()) {
+    append("topic", "'" + filter.ignore_topics[i] + "'");
+  }
+  if (!filter.ignore_namespaces.empty()) {
+    append("namespace", "'" + filter.ignore_namespaces[i] + "'");
+  }
+  if (!filter.ignore_ids.empty()) {
+    append("id", std::to_string(filter.ignore_ids[i]));
+  }
+  return "There is no box to ignore of " + name + ".";
+}
+
+}  // namespace
+
+void check(const BoxFilter& filter) {
+  const std::size_t topics = filter.ignore_topics.size();
+  const std::size_t namespaces = filter.ignore_namespaces.size();
+  const std::size_t ids = filter.ignore_ids.size();
+  if (ids != 0 && namespaces != ids) {
+    throw std::invalid_argument(lengthsOf("ignore_namespaces", namespaces, "ignore_ids", ids) +
+                                "name every ignored box by its namespace and its id");
+  }
+  if (topics != 0 && namespaces != 0 && topics != namespaces) {
+    throw std::invalid_argument(
+        lengthsOf("ignore_topics", topics, "ignore_namespaces", namespaces) +
+        "leave it empty (any topic), or give one topic a namespace");
+  }
 }
 
 std::optional<BoxMask> maskOf(const BoxFilter& filter, const Snapshot& snapshot) {
-  if (filter.namespaces.empty() && filter.ignore_ids.empty()) {
+  if (!filter.filters()) {
     return std::nullopt;
   }
-  const Names& names = snapshot.names;
-  const std::vector<std::string> topics = topicsOf(names);
-  BoxMask mask(names.size(), filter.namespaces.empty());
-  for (const std::string& topic : topics) {
-    for (const std::string& ns : filter.namespaces) {
-      setRange(names, lowestOf(topic, ns), highestOf(topic, ns), true, mask);
-    }
+  const Strings topics = topicsOf(snapshot.names);
+  BoxMask mask = chosen(filter, snapshot.names, topics);
+  if (!filter.labels.empty()) {
+    dropOtherLabels(filter.labels, snapshot.names, mask);
   }
-  for (std::size_t i = 0; i < filter.ignore_ids.size(); ++i) {
-    const auto ignore = [&](const std::string& topic) {
-      const BoxName name = {topic, filter.ignore_namespaces[i], filter.ignore_ids[i], ""};
-      setRange(names, name, name, false, mask);
-    };
-    if (filter.ignore_topics.empty()) {
-      std::for_each(topics.begin(), topics.end(), ignore);
-    } else {
-      ignore(resolved(filter.ignore_topics[i]));
-    }
+  for (std::size_t i = 0; i < filter.ignored(); ++i) {
+    visitIgnored(filter, i, snapshot.names, topics,
+                 [&mask](const IndexRange& range) { setRange(range, false, mask); });
   }
   return mask;
+}
+
+std::string unknownNames(const BoxFilter& filter, const Snapshot& snapshot) {
+  if (!filter.filters()) {
+    return "";
+  }
+  const Names& names = snapshot.names;
+  const Strings topics = topicsOf(names);
+  std::string text;
+  for (const std::string& sentence :
+       {unknownTopic(filter, snapshot), unknownNamespace(filter, names, topics),
+        unknownLabel(filter, names), unknownIgnored(filter, names, topics)}) {
+    text += (text.empty() || sentence.empty() ? "" : " ") + sentence;
+  }
+  return text;
 }
 
 }  // namespace box_query

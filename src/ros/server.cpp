@@ -71,11 +71,12 @@ void Server::answerNow(const Request& request, Response& response) {
   Context context = {*snapshot, ros::Time::now(), frame, markers_.drawing(),
                      monitor_.parameters().batch_threads};
   answer(request, context, response);
-  response.message = unknownNamespace(BoxFilter(request), *snapshot);
+  response.message = unknownNames(BoxFilter(request), *snapshot);
   markers_.show(context.drawing.take());
 }
 
 void Server::answerNow(const GetSceneRequest& request, GetSceneResponse& response) {
+  check(request);
   const SnapshotPtr snapshot =
       request.scene_id == 0 ? monitor_.currentScene() : monitor_.sceneById(request.scene_id);
   if (!snapshot) {
@@ -86,7 +87,8 @@ void Server::answerNow(const GetSceneRequest& request, GetSceneResponse& respons
         " boxes in all; ask sooner, raise ~kept_scenes or ~max_kept_boxes, "
         "or ask for 0, the current one");
   }
-  answer(*snapshot, ros::Time::now(), response);
+  answer(request, *snapshot, ros::Time::now(), response);
+  response.message = unknownNames(BoxFilter(request), *snapshot);
 }
 
 template <class Request, class Response>

@@ -23,7 +23,7 @@ class Demo(unittest.TestCase):
     def test_another_answer_is_wrong(self):
         ask = ask_demo.Services()
         table = ask_demo.Table()
-        table.add('?', ask.get_scene(0), '', '', (1.0000000000000002, 1.0))
+        table.add('?', ask.get_scene(), '', '', (1.0000000000000002, 1.0))
         self.assertEqual(table.wrong, 1)
 
 

@@ -199,6 +199,26 @@ TEST_F(Server, Filters) {
   request.namespaces = {"even"};
   EXPECT_NE(cast(request).box_id % 2, 1);
   EXPECT_EQ(cast(request).message, "");
+  request.namespaces = {"odd"};
+  request.topics = {"boxes"};
+  EXPECT_TRUE(cast(request).hit);
+  request.ignore_namespaces = {"odd"};
+  EXPECT_FALSE(cast(request).hit);
+  request.ignore_namespaces.clear();
+  request.topics = {"extra"};
+  EXPECT_FALSE(cast(request).hit);
+  EXPECT_EQ(cast(request).message, "") << "it has no boxes, but is listened to";
+}
+
+TEST_F(Server, GivesSomeOfItsScene) {
+  GetSceneRequest request;
+  request.namespaces = {"odd"};
+  request.ignore_namespaces = {"odd", "odd"};
+  request.ignore_ids = {1, 2};
+  const auto response = call<GetScene>("get_scene", request);
+  EXPECT_EQ(response.box_ids.size(), 19U);
+  EXPECT_EQ(response.poses.size(), 19U);
+  EXPECT_EQ(response.message, "There is no box to ignore of namespace 'odd', id 2.");
 }
 
 TEST_F(Server, WarnsOfANamespaceThatNoBoxHas) {

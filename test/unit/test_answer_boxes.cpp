@@ -121,7 +121,7 @@ TEST(FindIntersections, ThatOverflowInTheFixedFrameAreRefused) {
 TEST(GetScene, GivesEveryBoxInFullDoubles) {
   const Snapshot snapshot = randomSnapshot(50, 5);
   GetSceneResponse response;
-  answer(snapshot, ros::Time(103), response);
+  answer(GetSceneRequest(), snapshot, ros::Time(103), response);
   EXPECT_EQ(response.scene_id, 7U);
   EXPECT_EQ(response.header.frame_id, "map");
   EXPECT_EQ(response.header.stamp, ros::Time(100));
@@ -139,6 +139,19 @@ TEST(GetScene, GivesEveryBoxInFullDoubles) {
     EXPECT_EQ(response.box_labels[i], "box " + std::to_string(i));
     EXPECT_EQ(response.box_topics[i], "/a");
   }
+}
+
+TEST(GetScene, GivesTheBoxesThatPass) {
+  GetSceneRequest request;
+  request.namespaces = {"rack"};
+  request.ignore_topics = {"/b"};
+  GetSceneResponse response;
+  answer(request, smallSnapshot(), ros::Time(103), response);
+  EXPECT_EQ(response.box_ids, (std::vector<std::int64_t>{1, 2}));
+  EXPECT_EQ(response.poses.size(), 2U);
+  EXPECT_EQ(response.poses.back().position, point(4, 0, 0));
+  request.ignore_ids = {1};
+  EXPECT_THROW(check(request), std::invalid_argument);
 }
 
 TEST(NoAnswer, HasNoNumberThatCouldBeTakenForOne) {

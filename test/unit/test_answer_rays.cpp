@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ros/box_filter.h"
 #include "unit/answer_fixture.h"
 
 #include <limits>
@@ -66,74 +65,6 @@ TEST(CastRay, AnswersInTheFrameOfTheRequest) {
   EXPECT_NEAR(response.normal.y, 1, 1e-15);
   request.max_range = 1.4;
   EXPECT_FALSE(ask(request, smallSnapshot(), quarterTurn()).hit);
-}
-
-TEST(CastRay, FiltersByNamespaceAndByBox) {
-  const Snapshot snapshot = smallSnapshot();
-  const auto first = [&](const CastRayRequest& request) {
-    const CastRayResponse response = ask(request, snapshot);
-    return response.hit ? response.range : -1.0;
-  };
-  CastRayRequest request = rayAlongX();
-  request.namespaces = {"robot"};
-  EXPECT_EQ(first(request), 5.5);
-  request.namespaces = {"nobody", "robot"};
-  EXPECT_EQ(first(request), 5.5);
-  request.namespaces = {"nobody"};
-  EXPECT_EQ(first(request), -1.0);
-  request.namespaces = {"rack"};
-  request.ignore_namespaces = {"rack", "rack"};
-  request.ignore_ids = {1, 2};
-  EXPECT_EQ(first(request), -1.0) << "without topics, every topic's box is ignored";
-  request.ignore_topics = {"/a", "/a"};
-  EXPECT_EQ(first(request), 7.5);
-  request.ignore_topics = {"a", "a"};
-  EXPECT_EQ(first(request), 7.5) << "topics are resolved as the node's own";
-  request.ignore_topics = {"/b", "/b"};
-  EXPECT_EQ(first(request), 1.5);
-  request.ignore_ids = {17, 18};
-  EXPECT_EQ(first(request), 1.5) << "boxes that are not there are no error";
-}
-
-std::string unknownAmong(const std::vector<std::string>& namespaces, const Snapshot& snapshot) {
-  CastRayRequest request;
-  request.namespaces = namespaces;
-  return unknownNamespace(BoxFilter(request), snapshot);
-}
-
-TEST(BoxFilter, NamesTheNamespaceThatNoBoxHas) {
-  Snapshot snapshot = smallSnapshot();
-  EXPECT_EQ(unknownAmong({}, snapshot), "");
-  EXPECT_EQ(unknownAmong({"robot", "rack"}, snapshot), "");
-  EXPECT_EQ(
-      unknownAmong({"rack", "robt"}, snapshot),
-      "No box has the namespace 'robt': there are 'rack', 'robot'. Correct it, unless none is "
-      "meant to be there now.");
-  EXPECT_NE(unknownAmong({""}, snapshot), "");
-  snapshot.names.insert(snapshot.names.begin(), BoxName{"/a", "", 1, ""});
-  EXPECT_EQ(unknownAmong({""}, snapshot), "");
-  EXPECT_EQ(unknownAmong({"rac"}, smallSnapshot()).find("No box has the namespace 'rac':"), 0U);
-}
-
-TEST(BoxFilter, ListsAFewOfManyNamespaces) {
-  Snapshot snapshot;
-  EXPECT_EQ(unknownAmong({"rack"}, snapshot),
-            "No box has the namespace 'rack': there are no boxes.");
-  for (int i = 10; i < 35; ++i) {
-    snapshot.names.push_back({"/a", std::to_string(i), 1, ""});
-  }
-  const std::string sentence = unknownAmong({"rack"}, snapshot);
-  EXPECT_NE(sentence.find("there are '10', '11'"), std::string::npos) << sentence;
-  EXPECT_NE(sentence.find("'19' and 15 more."), std::string::npos) << sentence;
-}
-
-TEST(CastRay, SeveralBoxesOfOneNameAreIgnoredTogether) {
-  Snapshot snapshot = smallSnapshot();
-  snapshot.names[1].id = 1;
-  CastRayRequest request = rayAlongX();
-  request.ignore_namespaces = {"rack"};
-  request.ignore_ids = {1};
-  EXPECT_EQ(ask(request, snapshot).range, 5.5);
 }
 
 CastRaysRequest randomRays(std::size_t count, unsigned seed) {
@@ -270,12 +201,6 @@ TEST(Rays, AreRefusedWithASentence) {
             "max_range is -1: give metres >= 0; 0 or +Inf is unlimited");
   EXPECT_EQ(with([nan](auto& r) { r.max_range = nan; }),
             "max_range is nan: give metres >= 0; 0 or +Inf is unlimited");
-  EXPECT_EQ(with([](auto& r) { r.ignore_ids = {1}; }),
-            "ignore_namespaces has 0 elements and ignore_ids 1: name every ignored box by its "
-            "namespace and its id");
-  EXPECT_EQ(with([](auto& r) { r.ignore_topics = {"a"}; }),
-            "ignore_topics has 1 elements and ignore_ids 0: leave it empty (any topic), or give "
-            "one topic a box");
 }
 
 TEST(Rays, AreRefusedByTheIndexAtFault) {

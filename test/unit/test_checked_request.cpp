@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <type_traits>
 
 #include <gtest/gtest.h>
 
@@ -64,17 +65,21 @@ CheckedRequest<Request> decode(const Bytes& given, std::uint32_t max_array_lengt
   return checked;
 }
 
-/// Fills what all requests but that of GetScene have in common.
+/// Fills what all requests have in common.
 template <class Request>
 Request withFilters() {
   Request request;
-  request.header.frame_id = "base_link";
-  request.header.stamp = ros::Time(7, 8);
+  request.topics = {"boxes"};
   request.namespaces = {"rack", "", "pallet"};
+  request.labels = {"tote"};
   request.ignore_topics = {"/boxes"};
   request.ignore_namespaces = {"robot"};
   request.ignore_ids = {-3};
-  request.allow_incomplete = true;
+  if constexpr (!std::is_same_v<Request, GetSceneRequest>) {
+    request.header.frame_id = "base_link";
+    request.header.stamp = ros::Time(7, 8);
+    request.allow_incomplete = true;
+  }
   return request;
 }
 
@@ -130,7 +135,7 @@ FindIntersectionsRequest example() {
 
 template <>
 GetSceneRequest example() {
-  GetSceneRequest request;
+  auto request = withFilters<GetSceneRequest>();
   request.scene_id = 1234567890123;
   return request;
 }
