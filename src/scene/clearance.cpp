@@ -41,7 +41,13 @@ bool isFartherThan(const Segment& segment, const Box& any, const NearestEstimate
 }
 
 /// A box that may be the nearest one.
+///
+/// Not an aggregate: of one GCC clears all members first, also the room for exact numbers that are
+/// hardly ever there, of 600 bytes.
 struct Nearby {
+  Nearby() = default;
+  Nearby(std::size_t number, const NearestEstimate& e) : box(number), estimate(e) {}
+
   std::size_t box = kNoBox;
   NearestEstimate estimate;
   std::optional<exact::Ratio> squared;
@@ -63,8 +69,11 @@ bool isNearer(const Segment& segment, const std::vector<Box>& boxes, Nearby& a, 
   return order < 0 || (order == 0 && a.box < b.box);
 }
 
-/// A box within the radius.
+/// A box within the radius. Not an aggregate either.
 struct Blocking {
+  Blocking() = default;
+  Blocking(std::size_t number, const NearestEstimate& e) : box(number), estimate(e) {}
+
   std::size_t box = kNoBox;
   NearestEstimate estimate;
   /// Of the first parameter within the radius.
@@ -125,7 +134,7 @@ Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const no
   impl_->forEachNear(
       segment, std::numeric_limits<double>::infinity(), true, mask, [&](std::size_t i) {
         const Box& box = impl_->simplest[i];
-        Nearby other{i, estimateFor(segment, impl_->prepared[i]), std::nullopt};
+        Nearby other(i, estimateFor(segment, impl_->prepared[i]));
         if (other.estimate.bounds.lower <= 0.0 && meet(segment, box)) {
           if (!met || i < nearest.box) {
             nearest = std::move(other);  // nothing is nearer
@@ -170,7 +179,7 @@ Blockage Scene::firstBlockage(const Segment& segment, double radius,
   Blocking first;
   impl_->forEachNear(segment, radius, false, mask, [&](std::size_t i) {
     const Box& box = impl_->simplest[i];
-    Blocking other{i, estimateFor(segment, impl_->prepared[i]), {}, std::nullopt};
+    Blocking other(i, estimateFor(segment, impl_->prepared[i]));
     if (isFartherThan(segment, box, other.estimate, radius)) {
       return radius;
     }
