@@ -21,7 +21,7 @@ constexpr double kUp = 1.0 + 0x1p-20;
 /// More than what is lost where floats underflow.
 constexpr double kFloatUnderflow = 0x1p-100;
 
-/// Segments: distances, relative to themselves and to |o|_1 + |d|_1: 16u. See generic/nearest.h.
+/// Segments: distances, relative to themselves and to |o|_1 + |d|_1: 24u. See generic/nearest.h.
 constexpr double kLoss = 0x1p-19;
 /// More than a distance whose square a float cannot hold.
 constexpr double kShortest = 0x1p-60;

@@ -14,6 +14,8 @@ namespace box_query::kernels {
 
 constexpr int kSlots = 16;
 constexpr int kMaxLevels = 7;
+/// Of the last level.
+constexpr int kMostRootNodes = 8;
 
 /// Bounds of sixteen boxes, or of sixteen nodes of the level below. An empty slot is nowhere: its
 /// minimum is +inf, its maximum -inf.

@@ -21,6 +21,8 @@ constexpr std::size_t kFlat = 128;
 constexpr std::size_t kInBlocks = 16;
 /// Roots are compared all: more of them save a level, for longer.
 constexpr std::size_t kMostRoots = 96;
+static_assert(kFlat <= kSlots * kernels::kMostRootNodes, "all nodes of a list are roots");
+static_assert(kMostRoots <= kSlots * kernels::kMostRootNodes, "and so are those of the last level");
 
 /// The middle of a box and how far it reaches along the axes of the world.
 struct Reach {

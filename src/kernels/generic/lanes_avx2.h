@@ -32,8 +32,13 @@ static inline Float16 operator-(Float16 a, Float16 b) {
 static inline Float16 operator/(Float16 a, Float16 b) {
   return {_mm256_div_ps(a.lo, b.lo), _mm256_div_ps(a.hi, b.hi)};
 }
-static inline Float16 squareRoot(Float16 a) {
-  return {_mm256_sqrt_ps(a.lo), _mm256_sqrt_ps(a.hi)};
+/// a / b, off by less than 2^-11 of it.
+static inline Float16 roughQuotient(Float16 a, Float16 b) {
+  return {_mm256_mul_ps(a.lo, _mm256_rcp_ps(b.lo)), _mm256_mul_ps(a.hi, _mm256_rcp_ps(b.hi))};
+}
+/// a / sqrt(b), off by less than 8u of it.
+static inline Float16 overRoot(Float16 a, Float16 b) {
+  return {overRoot(Float8{a.lo}, Float8{b.lo}).v, overRoot(Float8{a.hi}, Float8{b.hi}).v};
 }
 /// a where b is not 0.
 static inline Float16 orZeroWhereZero(Float16 a, Float16 b) {
@@ -47,6 +52,21 @@ static inline Float16 larger(Float16 a, Float16 b) {
 }
 static inline Float16 smaller(Float16 a, Float16 b) {
   return {_mm256_min_ps(a.lo, b.lo), _mm256_min_ps(a.hi, b.hi)};
+}
+/// The smallest lane, where none is NaN.
+static inline float smallestLane(Float16 a) {
+  return smallestLane(Float8{_mm256_min_ps(a.lo, a.hi)});
+}
+/// a but for one lane, which is +inf.
+static inline Float16 withInfinity(Float16 a, int lane) {
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  static const float there[2 * kSlots - 1] = {
+      -kInf, -kInf, -kInf, -kInf, -kInf, -kInf, -kInf, -kInf, -kInf, -kInf, -kInf,
+      -kInf, -kInf, -kInf, -kInf, kInf,  -kInf, -kInf, -kInf, -kInf, -kInf, -kInf,
+      -kInf, -kInf, -kInf, -kInf, -kInf, -kInf, -kInf, -kInf, -kInf};
+  const float* from = there + (kSlots - 1 - lane);
+  return {_mm256_max_ps(a.lo, _mm256_loadu_ps(from)),
+          _mm256_max_ps(a.hi, _mm256_loadu_ps(from + 8))};
 }
 /// A bit for every lane in which a <= b.
 static inline std::uint32_t notAbove(Float16 a, Float16 b) {

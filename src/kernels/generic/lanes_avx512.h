@@ -34,8 +34,16 @@ static inline Float16 operator-(Float16 a, Float16 b) {
 static inline Float16 operator/(Float16 a, Float16 b) {
   return {_mm512_div_ps(a.v, b.v)};
 }
-static inline Float16 squareRoot(Float16 a) {
-  return {_mm512_maskz_sqrt_ps(kAllLanes, a.v)};
+/// a / b, off by less than 2^-13 of it.
+static inline Float16 roughQuotient(Float16 a, Float16 b) {
+  return {_mm512_mul_ps(a.v, _mm512_maskz_rcp14_ps(kAllLanes, b.v))};
+}
+/// a / sqrt(b) by Newton's method from an estimate, off by less than 8u of it.
+static inline Float16 overRoot(Float16 a, Float16 b) {
+  const __m512 r = _mm512_maskz_rsqrt14_ps(kAllLanes, b.v);
+  const __m512 half_b = _mm512_mul_ps(b.v, _mm512_set1_ps(0.5F));
+  const __m512 factor = _mm512_fnmadd_ps(_mm512_mul_ps(half_b, r), r, _mm512_set1_ps(1.5F));
+  return {_mm512_mul_ps(_mm512_mul_ps(a.v, r), factor)};
 }
 /// a where b is not 0.
 static inline Float16 orZeroWhereZero(Float16 a, Float16 b) {
@@ -47,6 +55,16 @@ static inline Float16 larger(Float16 a, Float16 b) {
 }
 static inline Float16 smaller(Float16 a, Float16 b) {
   return {_mm512_maskz_min_ps(kAllLanes, a.v, b.v)};
+}
+/// The smallest lane, where none is NaN.
+static inline float smallestLane(Float16 a) {
+  return smallestLane(Float8{_mm256_min_ps(_mm512_maskz_extractf32x8_ps(0xff, a.v, 0),
+                                           _mm512_maskz_extractf32x8_ps(0xff, a.v, 1))});
+}
+/// a but for one lane, which is +inf.
+static inline Float16 withInfinity(Float16 a, int lane) {
+  const __m512 infinity = _mm512_set1_ps(std::numeric_limits<float>::infinity());
+  return {_mm512_mask_mov_ps(a.v, static_cast<__mmask16>(1U << lane), infinity)};
 }
 /// A bit for every lane in which a <= b.
 static inline std::uint32_t notAbove(Float16 a, Float16 b) {

@@ -197,8 +197,13 @@ static inline Float8 magnitude(const Float8& a) {
 static inline Float8 withSignOf(const Float8& a, const Float8& b) {
   return each<kBlockSlots>([&](int i) { return std::signbit(b.v[i]) ? -a.v[i] : a.v[i]; });
 }
-static inline Float16 squareRoot(const Float16& a) {
-  return each<kSlots>([&](int i) { return std::sqrt(a.v[i]); });
+/// a / b; an estimate would do.
+static inline Float16 roughQuotient(const Float16& a, const Float16& b) {
+  return a / b;
+}
+/// a / sqrt(b), off by less than 8u of it.
+static inline Float16 overRoot(const Float16& a, const Float16& b) {
+  return each<kSlots>([&](int i) { return a.v[i] / std::sqrt(b.v[i]); });
 }
 /// a where b is not 0.
 static inline Float16 orZeroWhereZero(const Float16& a, const Float16& b) {
@@ -212,6 +217,19 @@ static inline Floats<kLanes> larger(const Floats<kLanes>& a, const Floats<kLanes
 template <int kLanes>
 static inline Floats<kLanes> smaller(const Floats<kLanes>& a, const Floats<kLanes>& b) {
   return each<kLanes>([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; });
+}
+/// The smallest lane, where none is NaN.
+static inline float smallestLane(const Float16& a) {
+  float least = a.v[0];
+  for (int i = 1; i < kSlots; ++i) {
+    least = a.v[i] < least ? a.v[i] : least;
+  }
+  return least;
+}
+/// a but for one lane, which is +inf.
+static inline Float16 withInfinity(Float16 a, int lane) {
+  a.v[lane] = std::numeric_limits<float>::infinity();
+  return a;
 }
 /// A bit for every lane in which a <= b.
 template <int kLanes>

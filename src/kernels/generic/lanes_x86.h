@@ -183,3 +183,16 @@ static inline Float8 smaller(Float8 a, Float8 b) {
 static inline std::uint32_t notAbove(Float8 a, Float8 b) {
   return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ)));
 }
+/// a / sqrt(b) by Newton's method from an estimate, off by less than 8u of it.
+static inline Float8 overRoot(Float8 a, Float8 b) {
+  const __m256 r = _mm256_rsqrt_ps(b.v);
+  const __m256 half_b = _mm256_mul_ps(b.v, _mm256_set1_ps(0.5F));
+  const __m256 factor = _mm256_fnmadd_ps(_mm256_mul_ps(half_b, r), r, _mm256_set1_ps(1.5F));
+  return {_mm256_mul_ps(_mm256_mul_ps(a.v, r), factor)};
+}
+/// The smallest lane, where none is NaN.
+static inline float smallestLane(Float8 a) {
+  __m128 m = _mm_min_ps(_mm256_castps256_ps128(a.v), _mm256_extractf128_ps(a.v, 1));
+  m = _mm_min_ps(m, _mm_movehl_ps(m, m));
+  return _mm_cvtss_f32(_mm_min_ss(m, _mm_movehdup_ps(m)));
+}

@@ -7,8 +7,9 @@
 // middle of the bounds, improved by one step of Newton's method.
 //
 // With o relative to the center of the scene and u = 2^-24, o and d are off by u (|o|_1 + |d|_1) as
-// floats, points by twice as much again, and |w|, g' |.| and their sum by at most 16u of what they
-// are made of: kLoss covers them, relative to |w| and to |o|_1 + |d|_1.
+// floats, points by twice as much again, and |w|^2, d . w |.| and their sum by at most 16u of what
+// they are made of, its quotient by |w| by 8u: kLoss covers them, relative to |w| and to
+// |o|_1 + |d|_1.
 
 struct FloatSegment {
   Float16 origin[3];
@@ -37,9 +38,8 @@ static inline FloatSegment floatSegment(const SceneView& view, const SegmentQuer
   return s;
 }
 
-/// Lower bounds of the distance to sixteen bounds; +inf for an empty slot.
-/// @param upper receives an upper bound of the distance to anything that fills its bounds
-static inline Float16 distances(const Bounds& bounds, const FloatSegment& s, Float16* upper) {
+/// Lower bounds of the distance to sixteen bounds; NaN for an empty slot.
+static inline Float16 distances(const Bounds& bounds, const FloatSegment& s) {
   const auto loss = static_cast<float>(bounds::kLoss);
   const auto shortest = static_cast<float>(bounds::kShortest);
   const Float16 zero = all16(0.0F);
@@ -67,35 +67,18 @@ static inline Float16 distances(const Bounds& bounds, const FloatSegment& s, Flo
   for (int i = 0; i < 3; ++i) {
     curvature = curvature + orZeroWhereZero(s.direction[i] * s.direction[i], w[i]);
   }
-  t = larger(smaller(t - dotWith(s.direction) / curvature, one), zero);
+  t = larger(smaller(t - roughQuotient(dotWith(s.direction), curvature), one), zero);
   for (int i = 0; i < 3; ++i) {
     w[i] = excess(i);
   }
-  const Float16 length = squareRoot(dotWith(w) + all16(shortest * shortest));
-  const Float16 slope = dotWith(s.direction) / length;
+  const Float16 squared = dotWith(w) + all16(shortest * shortest);
+  const Float16 slope = dotWith(s.direction);
   const Float16 fall = smaller(zero - t * slope, (one - t) * slope);
-  if (upper != nullptr) {
-    Float16 diagonal = zero;
-    for (int i = 0; i < 3; ++i) {
-      const Float16 side = hi[i] - lo[i];
-      diagonal = multiplyAdd(side, side, diagonal);
-    }
-    *upper = (length + squareRoot(diagonal)) * all16(1.0F + loss) + s.slack;
-  }
-  return (length * all16(1.0F - loss) + fall) - s.slack;
+  return overRoot(squared + fall, squared) * all16(1.0F - loss) - s.slack;
 }
 
-/// The smallest lane that is no NaN, or +inf.
-static inline float smallestLane(const Float16& a) {
-  alignas(64) float lanes[kSlots];
-  store16(lanes, a);
-  float least = std::numeric_limits<float>::infinity();
-  for (int i = 0; i < kSlots; ++i) {
-    least = lanes[i] < least ? lanes[i] : least;
-  }
-  return least;
-}
-/// Nodes and records that are still to be looked at, nearest first as far as possible.
+/// Nodes and records that are still to be looked at: where only the nearest box matters nearest
+/// first, of each node's children, or else all that are within the bound.
 class NearestSearch {
  public:
   NearestSearch(const SceneView& view, const SegmentQuery& query, Approach approach, void* context,
@@ -111,76 +94,77 @@ class NearestSearch {
 
   void run() {
     const int top = view_.depth - 1;
-    const Level& level = view_.levels[top];
-    for (std::uint32_t node = 0; node < level.nodes; ++node) {
-      if (!look(top, node, query_.mask == nullptr && query_.shrinks)) {
-        return;
-      }
-    }
-    sortFrom(0);
-    while (count_ > 0) {
-      const Entry next = entries_[--count_];
-      if (next.lower <= bound_ && !look(next.level, next.node, false)) {
-        return;
+    const auto roots = static_cast<int>(view_.levels[top].nodes);
+    if (query_.shrinks) {
+      searchNearest<kMostRootNodes>(top, 0, roots);
+    } else {
+      for (int root = 0; root < roots && searchAll(top, static_cast<std::uint32_t>(root)); ++root) {
       }
     }
   }
 
  private:
-  struct Entry {
-    float lower;
-    std::int32_t level;
-    std::uint32_t node;
-  };
-  /// Of every level but the lowest one node's children wait, and the roots' before them.
-  static constexpr int kWaiting = kSlots * kSlots + kSlots * kMaxLevels;
-
   void setBound(double bound) {
-    // Rounded up; infinity stays.
-    bound_ = static_cast<float>(bound * bounds::kUp) + static_cast<float>(bounds::kFloatUnderflow);
+    // Rounded up, and finite, so that no empty slot is within it.
+    constexpr float kMost = std::numeric_limits<float>::max();
+    const float up =
+        static_cast<float>(bound * bounds::kUp) + static_cast<float>(bounds::kFloatUnderflow);
+    bound_ = up < kMost ? up : kMost;
   }
 
-  /// Looks at the sixteen slots of a node.
-  /// @return false to end the search
-  bool look(int level, std::uint32_t node, bool bound_by_node) {
-    const Level& here = view_.levels[level];
+  Float16 lowerBounds(int level, std::uint32_t node) {
     ++work_.nodes;
-    alignas(64) float lower[kSlots];
-    const int before = count_;
-    Float16 upper;
-    const Float16 all = distances(here.bounds[node], segment_, bound_by_node ? &upper : nullptr);
-    if (bound_by_node) {
-      const float least = smallestLane(upper);
-      bound_ = least < bound_ ? least : bound_;
+    return distances(view_.levels[level].bounds[node], segment_);
+  }
+
+  /// Looks at up to kNodes neighbouring nodes.
+  /// @return false to end the search
+  template <int kNodes>
+  bool searchNearest(int level, std::uint32_t node, int nodes) {
+    alignas(64) float waiting[kNodes * kSlots];
+    const Float16 nowhere = all16(std::numeric_limits<float>::infinity());
+    for (int i = 0; i < nodes; ++i) {
+      const Float16 lower = lowerBounds(level, node + static_cast<std::uint32_t>(i));
+      store16(waiting + i * kSlots, smaller(lower, nowhere));
     }
-    store16(lower, all);
-    std::uint32_t bits = notAbove(all, all16(bound_));
-    const std::uint32_t first = here.first[node];
-    Entry* entries = level > 0 ? entries_ : boxes_;
-    int count = level > 0 ? count_ : 0;
-    for (; bits != 0; bits &= bits - 1) {
-      const int slot = lowestBit(bits);
-      entries[count++] = {lower[slot], level - 1, first + static_cast<std::uint32_t>(slot)};
-    }
-    if (level > 0) {
-      count_ = count;
-      if (!bound_by_node && level < view_.depth - 1) {
-        sortFrom(before);
+    while (true) {
+      Float16 least = load16(waiting);
+      for (int i = 1; i < nodes; ++i) {
+        least = smaller(least, load16(waiting + i * kSlots));
       }
-      return true;
+      const float nearest = smallestLane(least);
+      if (!(nearest <= bound_)) {
+        return true;
+      }
+      float* at = waiting;
+      while (notAbove(load16(at), all16(nearest)) == 0) {
+        at += kSlots;
+      }
+      const int slot = lowestBit(notAbove(load16(at), all16(nearest)));
+      store16(at, withInfinity(load16(at), slot));
+      const auto owner = node + static_cast<std::uint32_t>((at - waiting) / kSlots);
+      const std::uint32_t child =
+          view_.levels[level].first[owner] + static_cast<std::uint32_t>(slot);
+      if (!(level > 0 ? searchNearest<1>(level - 1, child, 1) : visit(child))) {
+        return false;
+      }
     }
-    sort(boxes_, count);
-    while (count > 0) {
-      const Entry& next = boxes_[--count];
-      if (next.lower <= bound_ && !visit(next)) {
+  }
+
+  bool searchAll(int level, std::uint32_t node) {
+    const std::uint32_t first = view_.levels[level].first[node];
+    std::uint32_t bits = notAbove(lowerBounds(level, node), all16(bound_));
+    for (; bits != 0; bits &= bits - 1) {
+      const std::uint32_t child = first + static_cast<std::uint32_t>(lowestBit(bits));
+      if (!(level > 0 ? searchAll(level - 1, child) : visit(child))) {
         return false;
       }
     }
     return true;
   }
 
-  bool visit(const Entry& entry) {
-    const std::uint32_t box = view_.box_of_record[entry.node];
+  bool visit(std::uint32_t record) {
+    const std::uint32_t box = view_.box_of_record[record];
     if (query_.mask != nullptr && ((query_.mask[box / 64] >> (box % 64)) & 1U) == 0) {
       return true;
     }
@@ -195,20 +179,6 @@ class NearestSearch {
     return true;
   }
 
-  void sortFrom(int first) { sort(entries_ + first, count_ - first); }
-
-  /// The nearest last.
-  static void sort(Entry* entries, int count) {
-    for (int i = 1; i < count; ++i) {
-      const Entry entry = entries[i];
-      int k = i;
-      for (; k > 0 && entries[k - 1].lower < entry.lower; --k) {
-        entries[k] = entries[k - 1];
-      }
-      entries[k] = entry;
-    }
-  }
-
   const SceneView& view_;
   const SegmentQuery& query_;
   Approach approach_;
@@ -216,9 +186,6 @@ class NearestSearch {
   Work& work_;
   FloatSegment segment_;
   float bound_;
-  int count_ = 0;
-  Entry entries_[kWaiting];
-  Entry boxes_[kSlots];
 };
 
 static void nearest(const SceneView& view, const SegmentQuery& query, Approach approach,
