@@ -92,11 +92,10 @@ void readObject(WireReader& reader, const WireHeader& array, WholeSet& set,
 void decodeAutowareDetectedObjectArray(WireReader& reader, std::size_t max_boxes,
                                        DecodedMessage& message) {
   const WireHeader array = reader.header();
-  const std::uint32_t objects = reader.count(kObjectSize);
-  WholeSet set(objects, max_boxes, array.stamp, message);
-  for (std::uint32_t n = 0; n < objects && reader.ok() && message.problem.empty(); ++n) {
+  const auto read = [&](WholeSet& set, std::uint32_t /*n*/) {
     readObject(reader, array, set, message);
-  }
+  };
+  WholeSet::decode(reader, kObjectSize, max_boxes, array.stamp, message, read);
 }
 
 }  // namespace box_query

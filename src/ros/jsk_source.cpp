@@ -35,16 +35,15 @@ class NumberText {
 
 void decodeJskBoundingBoxArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message) {
   const WireHeader array = reader.header();
-  const std::uint32_t boxes = reader.count(kBoxSize);
-  WholeSet set(boxes, max_boxes, array.stamp, message);
   NumberText label;
-  for (std::uint32_t n = 0; n < boxes && reader.ok() && message.problem.empty(); ++n) {
+  const auto read = [&](WholeSet& set, std::uint32_t n) {
     const WireHeader header = reader.header();
     const WireBox box = reader.box();
     reader.number<float>();  // value
     const auto number = reader.number<std::uint32_t>();
     set.add(header, label.of(number), n, box.center, box.orientation, box.size);
-  }
+  };
+  WholeSet::decode(reader, kBoxSize, max_boxes, array.stamp, message, read);
 }
 
 }  // namespace box_query

@@ -61,15 +61,14 @@ void decodeVisionBoundingBox3DArray(WireReader& reader, std::size_t max_boxes,
 void decodeVisionDetection3DArray(WireReader& reader, std::size_t max_boxes,
                                   DecodedMessage& message) {
   const WireHeader array = reader.header();
-  const std::uint32_t detections = reader.count(kDetectionSize);
-  WholeSet set(detections, max_boxes, array.stamp, message);
-  for (std::uint32_t n = 0; n < detections && reader.ok() && message.problem.empty(); ++n) {
+  const auto read = [&](WholeSet& set, std::uint32_t n) {
     const WireHeader own = reader.header();
     const std::string class_name = readClass(reader);
     const WireBox box = reader.box();
     skipPointCloud2(reader);
     set.add(own.frame.empty() ? array : own, class_name, n, box.center, box.orientation, box.size);
-  }
+  };
+  WholeSet::decode(reader, kDetectionSize, max_boxes, array.stamp, message, read);
 }
 
 }  // namespace box_query

@@ -16,6 +16,18 @@ namespace box_query {
 /// most messages have few of these. Where they alternate among many, some changes have fewer boxes.
 class WholeSet {
  public:
+  /// Reads the array of such a message behind its header: calls read(set, n) for each element.
+  /// @param least bytes of an element whose strings and arrays are empty
+  template <typename Read>
+  static void decode(WireReader& reader, std::size_t least, std::size_t max_boxes,
+                     const ros::Time& stamp, DecodedMessage& message, Read&& read) {
+    const std::uint32_t elements = reader.count(least);
+    WholeSet set(elements, max_boxes, stamp, message);
+    for (std::uint32_t n = 0; n < elements && reader.ok() && message.problem.empty(); ++n) {
+      read(set, n);
+    }
+  }
+
   /// Refuses a message that has more than `max_boxes`. `stamp` is that of the message.
   WholeSet(std::uint32_t boxes, std::size_t max_boxes, const ros::Time& stamp,
            DecodedMessage& message);
