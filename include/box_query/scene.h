@@ -7,6 +7,7 @@
 #include <box_query/intersection.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -138,6 +139,20 @@ class Scene {
   /// @pre isValid(ray), max_range >= 0 (+inf: unlimited)
   ClosestBox castClosest(const Ray& ray, double max_range = std::numeric_limits<double>::infinity(),
                          const BoxMask* mask = nullptr) const noexcept;
+
+  /// The same of `count` rays one after the other, with the same answers: where there are many
+  /// boxes in less time, since several of them are under way at once. See batch.h for all cores.
+  /// @pre isValid() of each, max_range >= 0 (+inf: unlimited)
+  void cast(const Ray* rays, std::size_t count, Hit* hits,
+            double max_range = std::numeric_limits<double>::infinity(),
+            const BoxMask* mask = nullptr) const noexcept;
+  void castClosest(const Ray* rays, std::size_t count, ClosestBox* closest,
+                   double max_range = std::numeric_limits<double>::infinity(),
+                   const BoxMask* mask = nullptr) const noexcept;
+  /// 1 for true.
+  void castAny(const Ray* rays, std::size_t count, std::uint8_t* any,
+               double max_range = std::numeric_limits<double>::infinity(),
+               const BoxMask* mask = nullptr) const noexcept;
 
   /// Whether the ray meets any box at a range of at most `max_range`. Never says which.
   bool castAny(const Ray& ray, double max_range = std::numeric_limits<double>::infinity(),

@@ -34,13 +34,16 @@ namespace avx2 {
 #include "kernels/generic/blocks.h"
 #include "kernels/generic/traverse.h"
 #include "kernels/generic/ray_queries.h"
+#include "kernels/generic/together.h"
 #include "kernels/generic/nearest.h"
 #include "kernels/generic/wide.h"
 #include "kernels/generic/cross.h"
 // clang-format on
 }  // namespace avx2
 
-const Kernels kAvx2 = {"avx2", avx2::closest, avx2::any, avx2::all, avx2::nearest, avx2::cross};
+const Kernels kAvx2 = {
+    "avx2",    avx2::closest, avx2::any,  avx2::closestTogether, avx2::anyTogether,
+    avx2::all, avx2::nearest, avx2::cross};
 
 }  // namespace box_query::kernels
 

@@ -35,14 +35,16 @@ namespace avx512 {
 #include "kernels/generic/blocks.h"
 #include "kernels/generic/traverse.h"
 #include "kernels/generic/ray_queries.h"
+#include "kernels/generic/together.h"
 #include "kernels/generic/nearest.h"
 #include "kernels/generic/wide.h"
 #include "kernels/generic/cross.h"
 // clang-format on
 }  // namespace avx512
 
-const Kernels kAvx512 = {"avx512",    avx512::closest, avx512::any,
-                         avx512::all, avx512::nearest, avx512::cross};
+const Kernels kAvx512 = {
+    "avx512",    avx512::closest, avx512::any,  avx512::closestTogether, avx512::anyTogether,
+    avx512::all, avx512::nearest, avx512::cross};
 
 }  // namespace box_query::kernels
 

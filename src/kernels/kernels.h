@@ -8,7 +8,8 @@
 
 namespace box_query::kernels {
 
-enum class Answer { kNotTaken, kUndecided, kYes };
+using Together = void (*)(const SceneView&, const RayQuery* queries, std::size_t count,
+                          Deliver deliver, void* context);
 
 /// The functions of one instruction set.
 struct Kernels {
@@ -22,6 +23,11 @@ struct Kernels {
   /// Whether a box is certainly met within the range. If that is undecided, the boxes that may be
   /// are left in `found`, or were taken.
   Answer (*any)(const SceneView&, const RayQuery&, Found& found, Take take, void* context);
+
+  /// The same of `count` queries, several of them at a time: while one waits for memory, others go
+  /// on. They call deliver() once for each, in any order.
+  Together closest_together;
+  Together any_together;
 
   /// Finds all boxes that may be met.
   /// @return whether the component is taken

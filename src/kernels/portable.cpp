@@ -19,11 +19,18 @@ namespace portable {
 #include "kernels/generic/blocks.h"
 #include "kernels/generic/traverse.h"
 #include "kernels/generic/ray_queries.h"
+#include "kernels/generic/together.h"
 #include "kernels/generic/nearest.h"
 // clang-format on
 }  // namespace portable
 
-const Kernels kPortable = {"portable",    portable::closest, portable::any,
-                           portable::all, portable::nearest, nullptr};
+const Kernels kPortable = {"portable",
+                           portable::closest,
+                           portable::any,
+                           portable::closestTogether,
+                           portable::anyTogether,
+                           portable::all,
+                           portable::nearest,
+                           nullptr};
 
 }  // namespace box_query::kernels

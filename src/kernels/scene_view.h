@@ -8,6 +8,7 @@
 /// record in double says, and what that leaves open is the caller's.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace box_query::kernels {
@@ -120,6 +121,12 @@ struct Found {
 /// @return of the closest: an upper bound of the parameter where the first of them is entered, as
 /// far as the caller knows; of the others: negative to end the query
 using Take = double (*)(void* context, const Found& found);
+
+enum class Answer { kNotTaken, kUndecided, kYes };
+
+/// Takes what is found for a query of many, known by its place; null where it has to be asked by
+/// itself.
+using Deliver = void (*)(void* context, std::size_t query, Answer answer, const Found* found);
 
 /// The segment from start to end, and how far away a box may be to matter.
 ///

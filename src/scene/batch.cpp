@@ -42,6 +42,11 @@ class LowestException {
   std::size_t begin_ = 0;
 };
 
+std::size_t threadsFor(int max_threads) {
+  const int cores = tbb::task_arena(tbb::task_arena::automatic).max_concurrency();
+  return static_cast<std::size_t>(std::max(max_threads > 0 ? max_threads : cores, 1));
+}
+
 template <typename Answer, typename Query, typename Ask>
 std::vector<Answer> askEach(const std::vector<Query>& queries, const BatchOptions& options,
                             Ask&& ask) {
@@ -59,9 +64,7 @@ std::vector<Answer> askEach(const std::vector<Query>& queries, const BatchOption
 void forEachPart(std::size_t count, int max_threads,
                  const std::function<void(std::size_t begin, std::size_t end)>& work) {
   const std::size_t parts = count / kPart + (count % kPart != 0 ? 1 : 0);
-  const int cores = tbb::task_arena(tbb::task_arena::automatic).max_concurrency();
-  const auto wanted = static_cast<std::size_t>(std::max(max_threads > 0 ? max_threads : cores, 1));
-  const std::size_t threads = std::min(wanted, parts);
+  const std::size_t threads = parts < 2 ? 1 : std::min(parts, threadsFor(max_threads));
   if (threads < 2) {
     if (count > 0) {
       work(0, count);
@@ -89,23 +92,29 @@ void forEachPart(std::size_t count, int max_threads,
 
 std::vector<Hit> castEach(const Scene& scene, const std::vector<Ray>& rays,
                           const BatchOptions& options) {
-  return askEach<Hit>(rays, options, [&](const Ray& ray) {
-    return scene.cast(ray, options.max_range, options.mask);
+  std::vector<Hit> hits(rays.size());
+  forEachPart(rays.size(), options.max_threads, [&](std::size_t begin, std::size_t end) {
+    scene.cast(&rays[begin], end - begin, &hits[begin], options.max_range, options.mask);
   });
+  return hits;
 }
 
 std::vector<ClosestBox> castClosestEach(const Scene& scene, const std::vector<Ray>& rays,
                                         const BatchOptions& options) {
-  return askEach<ClosestBox>(rays, options, [&](const Ray& ray) {
-    return scene.castClosest(ray, options.max_range, options.mask);
+  std::vector<ClosestBox> closest(rays.size());
+  forEachPart(rays.size(), options.max_threads, [&](std::size_t begin, std::size_t end) {
+    scene.castClosest(&rays[begin], end - begin, &closest[begin], options.max_range, options.mask);
   });
+  return closest;
 }
 
 std::vector<std::uint8_t> castAnyEach(const Scene& scene, const std::vector<Ray>& rays,
                                       const BatchOptions& options) {
-  return askEach<std::uint8_t>(rays, options, [&](const Ray& ray) {
-    return std::uint8_t{scene.castAny(ray, options.max_range, options.mask)};
+  std::vector<std::uint8_t> any(rays.size());
+  forEachPart(rays.size(), options.max_threads, [&](std::size_t begin, std::size_t end) {
+    scene.castAny(&rays[begin], end - begin, &any[begin], options.max_range, options.mask);
   });
+  return any;
 }
 
 std::vector<std::uint8_t> isClearEach(const Scene& scene, const std::vector<Segment>& segments,

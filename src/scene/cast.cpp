@@ -64,14 +64,62 @@ Hit hitOf(const Ray& ray, const DoubleComponent& component, std::size_t index, c
 
 }  // namespace
 
-Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
-  FirstEntered<Ray> first(ray, impl_->simplest, impl_->prepared);
-  impl_->findFirst(first, max_range, mask);
+void Scene::Impl::offerAll(FirstEntered<Ray>& first, double max_range, const BoxMask* mask,
+                           const kernels::Found* found) const {
+  if (found != nullptr) {
+    first.offer(*found);
+    offerOthers(first, true, max_range, mask);
+  } else {
+    findFirst(first, max_range, mask);
+  }
+}
+
+Hit Scene::Impl::hitOf(const Ray& ray, double max_range, const BoxMask* mask,
+                       const kernels::Found* found) const {
+  FirstEntered<Ray> first(ray, simplest, prepared);
+  offerAll(first, max_range, mask, found);
   if (!first.any()) {
     return {};
   }
-  return hitOf(ray, first.component(), first.box(), impl_->boxes[first.box()],
-               impl_->simplest[first.box()], first.solution(), max_range);
+  return box_query::hitOf(ray, first.component(), first.box(), boxes[first.box()],
+                          simplest[first.box()], first.solution(), max_range);
+}
+
+ClosestBox Scene::Impl::closestOf(const Ray& ray, double max_range, const BoxMask* mask,
+                                  const kernels::Found* found) const {
+  if (found != nullptr && tree.left_out().empty()) {
+    // As a rule the kernel has decided everything.
+    const kernels::Candidate& c = found->candidates[0];
+    if (found->count == 0) {
+      return {};
+    }
+    if (found->count == 1 && c.certain && c.enter_hi <= found->t_inside) {
+      return {true, c.box, c.enter_lo, c.enter_hi};
+    }
+  }
+  return decidedClosestOf(ray, max_range, mask, found);
+}
+
+ClosestBox Scene::Impl::decidedClosestOf(const Ray& ray, double max_range, const BoxMask* mask,
+                                         const kernels::Found* found) const {
+  FirstEntered<Ray> first(ray, simplest, prepared);
+  offerAll(first, max_range, mask, found);
+  if (!first.any()) {
+    return {};
+  }
+  if (max_range < kInf && !(first.upper() <= reachOf(first.component(), max_range).inside) &&
+      !std::visit(
+          [&](const auto& box) {
+            return isEnteredWithin(ray, box, first.solution(), max_range, directionLength(ray));
+          },
+          simplest[first.box()])) {
+    return {};
+  }
+  return {true, first.box(), first.lower(), first.upper()};
+}
+
+Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
+  return impl_->hitOf(ray, max_range, mask, nullptr);
 }
 
 ClosestBox Scene::castClosest(const Ray& ray, double max_range,
@@ -85,40 +133,7 @@ ClosestBox Scene::castClosest(const Ray& ray, double max_range,
   };
   const bool taken = impl_->kernels.closest(impl_->view, rayQuery(ray, max_range, mask, direction),
                                             found, give_up, &too_many);
-  if (taken && !too_many && impl_->tree.left_out().empty()) {
-    // As a rule the kernel has decided everything.
-    const kernels::Candidate& c = found.candidates[0];
-    if (found.count == 0) {
-      return {};
-    }
-    if (found.count == 1 && c.certain && c.enter_hi <= found.t_inside) {
-      return {true, c.box, c.enter_lo, c.enter_hi};
-    }
-  }
   return impl_->closestOf(ray, max_range, mask, taken && !too_many ? &found : nullptr);
-}
-
-ClosestBox Scene::Impl::closestOf(const Ray& ray, double max_range, const BoxMask* mask,
-                                  const kernels::Found* found) const {
-  FirstEntered<Ray> first(ray, simplest, prepared);
-  if (found != nullptr) {
-    first.offer(*found);
-    offerOthers(first, true, max_range, mask);
-  } else {
-    findFirst(first, max_range, mask);
-  }
-  if (!first.any()) {
-    return {};
-  }
-  if (max_range < kInf && !(first.upper() <= reachOf(first.component(), max_range).inside) &&
-      !std::visit(
-          [&](const auto& box) {
-            return isEnteredWithin(ray, box, first.solution(), max_range, directionLength(ray));
-          },
-          simplest[first.box()])) {
-    return {};
-  }
-  return {true, first.box(), first.lower(), first.upper()};
 }
 
 bool Scene::castAny(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {

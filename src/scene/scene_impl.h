@@ -22,10 +22,19 @@ struct Scene::Impl {
   /// firstBlockage() for radius 0.
   Blockage firstMet(const Segment& segment, const BoxMask* mask) const;
 
-  /// castClosest() where more is needed than what the kernel says.
+  /// cast() and castClosest() behind the kernel.
   /// @param found all candidates, or null if they are still to be found
+  Hit hitOf(const Ray& ray, double max_range, const BoxMask* mask,
+            const kernels::Found* found) const;
   ClosestBox closestOf(const Ray& ray, double max_range, const BoxMask* mask,
                        const kernels::Found* found) const;
+  /// The latter where that does not say everything.
+  ClosestBox decidedClosestOf(const Ray& ray, double max_range, const BoxMask* mask,
+                              const kernels::Found* found) const;
+
+  /// Offers all candidates.
+  void offerAll(FirstEntered<Ray>& first, double max_range, const BoxMask* mask,
+                const kernels::Found* found) const;
 
   /// Offers all boxes that may be the first, but for those that are certainly entered beyond
   /// `max_range` metres.

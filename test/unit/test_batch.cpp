@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -173,6 +174,57 @@ TEST(Batch, OfNothingIsNothing) {
   const auto misses = castEach(Scene(), std::vector<Ray>(1000, Ray{{0, 0, 0}, {1, 0, 0}}));
   ASSERT_EQ(misses.size(), 1000U);
   EXPECT_FALSE(misses.back().hit);
+}
+
+/// Scenes that are searched in each of the ways there are, some of it by none of them.
+std::vector<std::vector<Box>> scenesOfEachKind() {
+  reference::Sampler sampler(12);
+  const auto scattered = [&](std::size_t count, double side) {
+    std::vector<Box> boxes;
+    while (boxes.size() < count) {
+      boxes.emplace_back(
+          OrientedBox{sampler.vector(-side, side), sampler.rotation(), sampler.vector(0.1, 1.5)});
+    }
+    return boxes;
+  };
+  std::vector<std::vector<Box>> scenes = {
+      {}, scattered(10, 5.0), scattered(100, 10.0), scattered(300, 15.0), scattered(9000, 40.0)};
+  scenes.push_back(scattered(300, 15.0));
+  scenes.back()[7] = AlignedBox{{-1e300, 10.0, -1e300}, {1e300, 11.0, 1e300}};
+  // More that are entered at once than any kernel keeps.
+  scenes.emplace_back(200, AlignedBox{{5, -9, -9}, {6, 9, 9}});
+  scenes.emplace_back(200, OrientedBox{{5, 0, 0}, {0.5, 0.5, 0.5, 0.5}, {1, 9, 9}});
+  return scenes;
+}
+
+TEST(Batch, OfAnySceneAndAnyRayIsThatOfSingleRays) {
+  reference::Sampler sampler(13);
+  for (const std::vector<Box>& boxes : scenesOfEachKind()) {
+    const Scene scene(boxes);
+    // The first two are of such numbers that no kernel takes them.
+    std::vector<Ray> rays{{{-1e25, 0.0, 0.0}, {1.0, 0.0, 0.0}},
+                          {{-9.0, 0.0, 0.0}, {1e-200, 1e-201, 0.0}}};
+    while (rays.size() < 700) {
+      const Vector3 from = sampler.vector(-10.0, 10.0);
+      const Vector3 toward = sampler.direction();
+      rays.push_back({from, toward});
+      rays.push_back({-1e9 * toward, 1e25 * toward});
+      rays.push_back({from, Vector3::Unit(sampler.index(3))});
+      rays.push_back({Vector3::Zero(), Vector3(1.0, sampler.uniform(-0.5, 0.5), 0.0)});
+    }
+    for (const double range : {6.0, std::numeric_limits<double>::infinity()}) {
+      const auto hits = castEach(scene, rays, {range});
+      const auto closest = castClosestEach(scene, rays, {range});
+      const auto any = castAnyEach(scene, rays, {range});
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const Hit hit = scene.cast(rays[i], range);
+        ASSERT_EQ(hits[i].box, hit.box) << boxes.size() << " boxes, ray " << i;
+        ASSERT_TRUE(same(hits[i].range, hit.range) && same(hits[i].point, hit.point));
+        ASSERT_EQ(closest[i].box, hit.box);
+        ASSERT_EQ(any[i] != 0, hit.hit);
+      }
+    }
+  }
 }
 
 }  // namespace

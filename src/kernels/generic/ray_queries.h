@@ -15,11 +15,12 @@ static inline bool mayEnter(const SceneView& view, const RayQuery& query, const 
   return t.enter_lo <= t.exit_hi && t.enter_lo <= bound;
 }
 
+/// A search for the closest box, as it goes from record to record.
 struct ClosestVisit {
-  const SceneView& view;
-  const RayQuery& query;
-  Ray& ray;
-  Found& found;
+  const SceneView* view;
+  const RayQuery* query;
+  Ray* ray;
+  Found* found;
   Take take;
   void* context;
   double bound;     ///< a box that is entered later is not the first
@@ -30,27 +31,27 @@ struct ClosestVisit {
 
   bool operator()(std::uint32_t record) {
     Candidate c;
-    if (!mayEnter(view, query, ray, bound, record, found.work, c)) {
+    if (!mayEnter(*view, *query, *ray, bound, record, found->work, c)) {
       return true;
     }
     if (c.certain && c.enter_hi < bound) {
       shorten(c.enter_hi);
       if (c.enter_hi < earliest) {
-        found.count = 0;  // all others are later
+        found->count = 0;  // all others are later
         earliest = c.enter_lo;
       }
     }
-    if (found.count == Found::kCapacity) {
+    if (found->count == Found::kCapacity) {
       makeRoom();
     }
     earliest = earliest < c.enter_lo ? earliest : c.enter_lo;
-    found.candidates[found.count++] = c;
+    found->candidates[found->count++] = c;
     return true;
   }
 
   void shorten(double t) {
     bound = t;
-    FloatRay& f = ray.in_float;
+    FloatRay& f = ray->in_float;
     bound_s = f.roundedUp(t);
     if (bound_s < f.end_s) {
       f.end_s = bound_s;
@@ -59,22 +60,22 @@ struct ClosestVisit {
 
   void dropLater() {
     int kept = 0;
-    for (int i = 0; i < found.count; ++i) {
-      if (found.candidates[i].enter_lo <= bound) {
+    for (int i = 0; i < found->count; ++i) {
+      if (found->candidates[i].enter_lo <= bound) {
         if (kept != i) {
-          found.candidates[kept] = found.candidates[i];
+          found->candidates[kept] = found->candidates[i];
         }
         ++kept;
       }
     }
-    found.count = kept;
+    found->count = kept;
   }
 
   void makeRoom() {
     dropLater();
-    if (found.count > Found::kCapacity / 2) {
-      const double known = take(context, found);
-      found.count = 0;
+    if (found->count > Found::kCapacity / 2) {
+      const double known = take(context, *found);
+      found->count = 0;
       earliest = std::numeric_limits<double>::infinity();
       if (known < bound) {
         shorten(known);
@@ -93,20 +94,25 @@ static inline Outcome begin(const SceneView& view, const RayQuery& query, Found&
   return outcome == Outcome::kReady && view.depth == 0 ? Outcome::kMiss : outcome;
 }
 
+static inline ClosestVisit closestVisit(const SceneView& view, const RayQuery& query, Ray& ray,
+                                        Found& found, Take take, void* context) {
+  return {&view,
+          &query,
+          &ray,
+          &found,
+          take,
+          context,
+          ray.t_end,
+          ray.in_float.end_s,
+          std::numeric_limits<double>::infinity()};
+}
+
 static bool closest(const SceneView& view, const RayQuery& query, Found& found, Take take,
                     void* context) {
   Ray ray;
   const Outcome outcome = begin(view, query, found, ray);
   if (outcome == Outcome::kReady) {
-    ClosestVisit visit{view,
-                       query,
-                       ray,
-                       found,
-                       take,
-                       context,
-                       ray.t_end,
-                       ray.in_float.end_s,
-                       std::numeric_limits<double>::infinity()};
+    ClosestVisit visit = closestVisit(view, query, ray, found, take, context);
     descendInStretches(view, ray.in_float, found.work, visit);
     visit.dropLater();
   }
@@ -129,10 +135,10 @@ static inline bool leaveToCaller(Found& found, const Candidate& candidate, Take 
 }
 
 struct AnyVisit {
-  const SceneView& view;
-  const RayQuery& query;
-  const Ray& ray;
-  Found& found;
+  const SceneView* view;
+  const RayQuery* query;
+  const Ray* ray;
+  Found* found;
   Take take;
   void* context;
   float end_s;
@@ -142,16 +148,21 @@ struct AnyVisit {
 
   bool operator()(std::uint32_t record) {
     Candidate c;
-    if (!mayEnter(view, query, ray, ray.t_end, record, found.work, c)) {
+    if (!mayEnter(*view, *query, *ray, ray->t_end, record, found->work, c)) {
       return true;
     }
-    if (c.certain && c.enter_hi <= ray.t_inside) {
+    if (c.certain && c.enter_hi <= ray->t_inside) {
       is_met = true;
       return false;
     }
-    return leaveToCaller(found, c, take, context);
+    return leaveToCaller(*found, c, take, context);
   }
 };
+
+static inline AnyVisit anyVisit(const SceneView& view, const RayQuery& query, const Ray& ray,
+                                Found& found, Take take, void* context) {
+  return {&view, &query, &ray, &found, take, context, ray.in_float.end_s, false};
+}
 
 static Answer any(const SceneView& view, const RayQuery& query, Found& found, Take take,
                   void* context) {
@@ -160,7 +171,7 @@ static Answer any(const SceneView& view, const RayQuery& query, Found& found, Ta
   if (outcome != Outcome::kReady) {
     return outcome == Outcome::kMiss ? Answer::kUndecided : Answer::kNotTaken;
   }
-  AnyVisit visit{view, query, ray, found, take, context, ray.in_float.end_s, false};
+  AnyVisit visit = anyVisit(view, query, ray, found, take, context);
   descendInStretches(view, ray.in_float, found.work, visit);
   return visit.is_met ? Answer::kYes : Answer::kUndecided;
 }

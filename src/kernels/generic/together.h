@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Many rays down one tree, a level at a time: the nodes that all of them may meet make one list. It
+// is long enough that a mispredicted end of it hardly counts, and that what a node or a record has
+// to wait for comes from memory while others are compared. For each ray the same is compared as if
+// it were alone, but for the order.
+
+constexpr int kRaysTogether = 16;
+/// Of an entry of a list, bits for the node or record; those above are for the ray.
+constexpr int kNumberBits = 28;
+constexpr std::uint32_t kLargestNumber = (1U << kNumberBits) - 1;
+constexpr int kListedTogether = 1024;
+/// How many entries ahead what they need is fetched.
+constexpr int kAhead = 4;
+
+/// A ray under way.
+template <typename Visit>
+struct Companion {
+  Ray ray;
+  Found found;
+  Visit visit;
+  std::size_t query;
+  bool gave_up;  ///< more candidates than there is room for
+  float begin;
+  float length;
+
+  FloatRay& inFloat() { return ray.in_float; }
+  /// The end of the stretch that it is on.
+  float end() const { return begin + length; }
+};
+
+template <typename Visit>
+struct Company {
+  const SceneView& view;
+  Companion<Visit>* rays;
+
+  Companion<Visit>& rayOf(std::uint32_t entry) const { return rays[entry >> kNumberBits]; }
+  static std::uint32_t rayBits(std::uint32_t entry) { return entry & ~kLargestNumber; }
+  static std::uint32_t numberOf(std::uint32_t entry) { return entry & kLargestNumber; }
+
+  void fetchRecord(std::uint32_t entry) const {
+    const BoxRecord& record = view.records[numberOf(entry)];
+    prefetch(&record);
+    prefetch(&record.column[2]);
+  }
+
+  void visitAll(const std::uint32_t* records, const float* nears, int count) const {
+    for (int i = 0; i < count && i < kAhead; ++i) {
+      fetchRecord(records[i]);
+    }
+    for (int i = 0; i < count; ++i) {
+      if (i + kAhead < count) {
+        fetchRecord(records[i + kAhead]);
+      }
+      Companion<Visit>& c = rayOf(records[i]);
+      if (nears[i] <= c.inFloat().end_s * static_cast<float>(bounds::kFarther) &&
+          !c.visit(numberOf(records[i]))) {
+        c.inFloat().end_s = -1.0F;  // nothing lies before it
+      }
+    }
+  }
+
+  void descend(int level, const std::uint32_t* nodes, int count) const {
+    alignas(64) std::uint32_t list[kListedTogether + kSlots];
+    alignas(64) float nears[kListedTogether + kSlots];
+    const Level& here = view.levels[level];
+    int listed = 0;
+    const auto goOn = [&] {
+      if (level > 0) {
+        descend(level - 1, list, listed);
+      } else {
+        visitAll(list, nears, listed);
+      }
+      listed = 0;
+    };
+    for (int k = 0; k < count; ++k) {
+      const std::uint32_t node = numberOf(nodes[k]);
+      Companion<Visit>& c = rayOf(nodes[k]);
+      ++c.found.work.nodes;
+      Float16 near;
+      const std::uint32_t bits = meets(here.bounds[node], c.inFloat(), near);
+      listed = append(bits, here.first[node] | rayBits(nodes[k]), near, list, nears, listed);
+      if (listed > kListedTogether - kSlots) {
+        goOn();
+      }
+    }
+    if (listed > 0) {
+      goOn();
+    }
+  }
+};
+
+static inline bool areTakenTogether(const SceneView& view) {
+  return view.depth > 1 && view.levels[0].nodes <= kLargestNumber / kSlots;
+}
+
+/// @param visitOf visitOf(companion) begins a search
+/// @param finish finish(companion, outcome) is called once for each query
+template <typename Visit, typename VisitOf, typename Finish>
+static void searchTogether(const SceneView& view, const RayQuery* queries, std::size_t count,
+                           VisitOf&& visitOf, Finish&& finish) {
+  Companion<Visit> rays[kRaysTogether];
+  const Company<Visit> company{view, rays};
+  const int top = view.depth - 1;
+  const std::uint32_t roots = view.levels[top].nodes;
+  std::size_t next = 0;
+  std::uint32_t under_way = 0;  // a bit for each of the rays
+  for (;;) {
+    alignas(64) std::uint32_t nodes[kRaysTogether * kSlots];
+    int listed = 0;
+    for (std::uint32_t i = 0; i < kRaysTogether; ++i) {
+      Companion<Visit>& c = rays[i];
+      while ((under_way & (1U << i)) == 0 && next < count) {
+        c.query = next++;
+        c.gave_up = false;
+        const Outcome outcome = begin(view, queries[c.query], c.found, c.ray);
+        if (outcome == Outcome::kReady) {
+          c.visit = visitOf(c);
+          c.begin = c.inFloat().begin_s;
+          c.length = static_cast<float>(view.mean_free_path);
+          under_way |= 1U << i;
+        } else {
+          finish(c, outcome);
+        }
+      }
+      if ((under_way & (1U << i)) != 0) {
+        const float whole = c.visit.end();
+        c.inFloat().setRange(c.begin, c.end() < whole ? c.end() : whole);
+        for (std::uint32_t root = 0; root < roots; ++root) {
+          nodes[listed++] = root | (i << kNumberBits);
+        }
+      }
+    }
+    if (listed == 0) {
+      return;
+    }
+    company.descend(top, nodes, listed);
+    for (std::uint32_t bits = under_way; bits != 0; bits &= bits - 1) {
+      const int i = lowestBit(bits);
+      Companion<Visit>& c = rays[i];
+      if (c.inFloat().end_s >= 0.0F && c.end() < c.visit.end()) {
+        c.begin = c.end();
+        c.length *= 2.0F;
+      } else {
+        under_way &= ~(1U << i);
+        finish(c, Outcome::kReady);
+      }
+    }
+  }
+}
+
+/// Takes no candidates, and so ends a search that has more of them than there is room for.
+static double giveUp(void* gave_up, const Found& /*found*/) {
+  *static_cast<bool*>(gave_up) = true;
+  return -std::numeric_limits<double>::infinity();
+}
+
+static void closestTogether(const SceneView& view, const RayQuery* queries, std::size_t count,
+                            Deliver deliver, void* context) {
+  if (!areTakenTogether(view)) {
+    for (std::size_t i = 0; i < count; ++i) {
+      Found found;
+      bool gave_up = false;
+      const bool taken = closest(view, queries[i], found, giveUp, &gave_up);
+      deliver(context, i, Answer::kUndecided, taken && !gave_up ? &found : nullptr);
+    }
+    return;
+  }
+  searchTogether<ClosestVisit>(
+      view, queries, count,
+      [&](auto& c) {
+        return closestVisit(view, queries[c.query], c.ray, c.found, giveUp, &c.gave_up);
+      },
+      [&](auto& c, Outcome outcome) {
+        if (outcome == Outcome::kReady) {
+          c.visit.dropLater();
+        }
+        const bool known = outcome != Outcome::kNotTaken && !c.gave_up;
+        deliver(context, c.query, Answer::kUndecided, known ? &c.found : nullptr);
+      });
+}
+
+static void anyTogether(const SceneView& view, const RayQuery* queries, std::size_t count,
+                        Deliver deliver, void* context) {
+  if (!areTakenTogether(view)) {
+    for (std::size_t i = 0; i < count; ++i) {
+      Found found;
+      bool gave_up = false;
+      const Answer answer = any(view, queries[i], found, giveUp, &gave_up);
+      const bool known = answer != Answer::kNotTaken && !gave_up;
+      deliver(context, i, answer, known ? &found : nullptr);
+    }
+    return;
+  }
+  searchTogether<AnyVisit>(
+      view, queries, count,
+      [&](auto& c) { return anyVisit(view, queries[c.query], c.ray, c.found, giveUp, &c.gave_up); },
+      [&](auto& c, Outcome outcome) {
+        const bool known = outcome != Outcome::kNotTaken && !c.gave_up;
+        const bool is_met = outcome == Outcome::kReady && c.visit.is_met;
+        deliver(context, c.query, is_met ? Answer::kYes : Answer::kUndecided,
+                known ? &c.found : nullptr);
+      });
+}
