@@ -12,6 +12,11 @@ std::int64_t nanoseconds(const ros::Time& time) {
   return static_cast<std::int64_t>(time.toNSec());
 }
 
+/// Boxes that are placed or wait.
+std::size_t boxesOf(const Item& item) {
+  return std::max(item.boxes.size(), item.waiting);
+}
+
 /// Bit for bit: no reader of a snapshot could tell them apart.
 bool same(const IdentifiedBoxes& a, const IdentifiedBoxes& b) {
   static_assert(sizeof(IdentifiedBox) == sizeof(std::int64_t) + 10 * sizeof(double), "no padding");
@@ -104,13 +109,20 @@ void BoxStore::remove(std::size_t topic_index, const std::string& ns, std::int64
   }
 }
 
-void BoxStore::clear(std::size_t topic_index) {
+std::size_t BoxStore::clear(std::size_t topic_index) {
   Topic& topic = topics_.at(topic_index);
+  std::size_t boxes = 0;
+  for (const auto& items : topic.items) {
+    for (const auto& entry : items.second) {
+      boxes += boxesOf(entry.second);
+    }
+  }
   if (!topic.items.empty()) {
     ++boxes_revision_;
   }
   topic = Topic();
   last_item_ = nullptr;
+  return boxes;
 }
 
 void BoxStore::forgetBefore(std::size_t topic_index, std::uint64_t word) {
@@ -161,7 +173,7 @@ std::size_t BoxStore::expire(const ros::Time& now) {
       for (auto next = items->second.begin(); next != items->second.end();) {
         Item& item = next->second;
         if (item.latest_expiry <= time) {
-          expired += std::max(item.boxes.size(), item.waiting);
+          expired += boxesOf(item);
           forget(topic, item);
           next = items->second.erase(next);
           continue;

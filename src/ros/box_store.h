@@ -80,7 +80,8 @@ class BoxStore {
   void giveUp(const Word& word, const std::string& problem);
 
   void remove(std::size_t topic, const std::string& ns, std::int64_t id);
-  void clear(std::size_t topic);
+  /// @return the number of boxes that were placed or waiting.
+  std::size_t clear(std::size_t topic);
   /// Forgets what the topic has not said again since that word: all of it, or that of one
   /// namespace.
   void forgetBefore(std::size_t topic, std::uint64_t word);

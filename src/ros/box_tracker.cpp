@@ -51,6 +51,7 @@ void BoxTracker::receive(std::size_t topic_index, const BoxSource* source, Decod
   Topic& topic = topics_.at(topic_index);
   ++changes_;
   ++counts_.messages;
+  dropIfStale(topic_index, now);  // nobody may have looked since it was
   topic.heard_type = source ? source->type : "";
   counts_.ignored_markers += message.ignored;
   if (!message.problem.empty()) {
@@ -211,6 +212,17 @@ void BoxTracker::expire(const ros::Time& now) {
   if (static_cast<std::int64_t>(now.toNSec()) >= store_.nextExpiry()) {
     ++changes_;
     counts_.expired_boxes += store_.expire(now);
+  }
+  for (std::size_t topic = 0; topic < topics_.size(); ++topic) {
+    dropIfStale(topic, now);
+  }
+}
+
+void BoxTracker::dropIfStale(std::size_t topic, const ros::Time& now) {
+  const TopicState& state = topics_[topic].state;
+  if (state.parameters.drop_stale && !store_.items(topic).empty() && state.isStale(now)) {
+    ++changes_;
+    counts_.dropped_boxes += store_.clear(topic);
   }
 }
 

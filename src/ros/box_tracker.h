@@ -44,7 +44,7 @@ class BoxTracker {
 
   /// Places the boxes whose transform has come; gives up those that waited too long.
   void settle(Clock::time_point now);
-  /// Drops boxes whose lifetime has ended.
+  /// Drops boxes whose lifetime has ended, and those of stale topics that are to be dropped.
   void expire(const ros::Time& now);
   /// Looks up the latest poses of frames that boxes are locked to.
   void followLockedFrames();
@@ -72,6 +72,7 @@ class BoxTracker {
     std::string latest_type;  ///< of the publisher that came last, if some cannot be heard
   };
 
+  void dropIfStale(std::size_t topic, const ros::Time& now);
   void apply(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now);
   void place(Word&& word);
   void placeAt(const FramePose& pose, Word&& word);

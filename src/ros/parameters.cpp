@@ -155,8 +155,11 @@ TopicParameters readTopic(const std::string& name, const XmlRpcValue& value) {
       read(member_name, member, kTopicTimeout, topic.timeout);
     } else if (key == "required") {
       read(member_name, member, topic.required);
+    } else if (key == "drop_stale") {
+      read(member_name, member, topic.drop_stale);
     } else {
-      refuse(member_name, member, "left out: a topic has the keys topic, timeout and required");
+      refuse(member_name, member,
+             "left out: a topic has the keys topic, timeout, required and drop_stale");
     }
   }
   return topic;
@@ -239,12 +242,15 @@ std::string Parameters::documentation() {
       << "| `~fixed_frame` | string | " << defaults.fixed_frame
       << " | | frame in which boxes are placed and queries answered |\n"
       << "| `~box_topics` | list | [" << defaults.box_topics.front().topic
-      << "] | | topics of boxes: names, or structs of the three below |\n"
+      << "] | | topics of boxes: names, or structs of the four below |\n"
       << "| `topic` | string | | | name, relative or absolute |\n"
       << "| `timeout` | double | " << topic.timeout << " | " << print(kTopicTimeout)
       << " | ROS time without a message after which the topic is stale; 0: never |\n"
       << "| `required` | bool | " << topic.required
-      << " | | whether a scene without this topic is incomplete |\n";
+      << " | | whether a scene without this topic is incomplete |\n"
+      << "| `drop_stale` | bool | " << topic.drop_stale
+      << " | | whether the boxes of a stale topic are dropped, until sent again; else they stay "
+         "|\n";
   for (const Entry& entry : kNumbers) {
     const bool is_int = std::holds_alternative<int Parameters::*>(entry.member);
     out << "| `~" << entry.name << "` | " << (is_int ? "int" : "double") << " | ";

@@ -26,16 +26,22 @@ std::string missingOf(const TopicState& topic, const ros::Time& now) {
          << ": start what publishes them, or correct ~box_topics.";
     separator = " ";
   }
-  const double silence = secondsBetween(topic.last_message, now);
-  if (topic.heard && topic.parameters.timeout > 0.0 && silence > topic.parameters.timeout) {
-    text << separator << "Topic " << name << " is stale: its last message came " << silence
-         << " s ago, and its timeout is " << topic.parameters.timeout
-         << " s: check what publishes it.";
+  if (topic.isStale(now)) {
+    text << separator << "Topic " << name << " is stale: its last message came "
+         << secondsBetween(topic.last_message, now) << " s ago, and its timeout is "
+         << topic.parameters.timeout << " s"
+         << (topic.parameters.drop_stale ? ", after which its boxes are dropped" : "")
+         << ": check what publishes it.";
   }
   return text.str();
 }
 
 }  // namespace
+
+bool TopicState::isStale(const ros::Time& now) const {
+  return heard && parameters.timeout > 0.0 &&
+         secondsBetween(last_message, now) > parameters.timeout;
+}
 
 Completeness Snapshot::completeness(const ros::Time& now) const {
   Completeness result;

@@ -85,6 +85,57 @@ TEST_F(SceneMonitorClock, EndsLifetimesAndTimeoutsToTheNanosecond) {
   EXPECT_FALSE(completenessOf(*monitor_).complete);
 }
 
+TEST_F(SceneMonitorClock, DropsTheBoxesOfAStaleTopicIfItIsToldTo) {
+  setTime(110.0);
+  parameters_ = listenTo({"/dropped", "/kept"});
+  parameters_.box_topics[0].timeout = 2.0;
+  parameters_.box_topics[0].drop_stale = true;
+  parameters_.box_topics[1].timeout = 5.0;
+  listen();
+  ArrayTalker dropped("/dropped");
+  ArrayTalker kept("/kept");
+  ASSERT_TRUE(dropped.isHeard() && kept.isHeard());
+  dropped.say(array({cube("map", 1, 1.0), cube("absent", 2, 2.0)}));
+  kept.say(array({cube("map", 3, 3.0)}));
+  ASSERT_TRUE(hasBoxes(*monitor_, 2));
+  setTime(112.0);
+  EXPECT_EQ(contents(*monitor_->currentScene()), "1:1 3:3 ");
+  expectReason({"'absent'"});
+
+  setTime(112.000000001);
+  EXPECT_EQ(contents(*monitor_->currentScene()), "3:3 ") << "each topic has a timeout of its own";
+  expectReason(
+      {"Topic /dropped is stale", "its timeout is 2 s, after which its boxes are dropped"});
+  EXPECT_EQ(completenessOf(*monitor_).reason.find("/kept"), std::string::npos);
+  EXPECT_EQ(monitor_->statistics().dropped_boxes, 2U) << "the waiting one too";
+  setTime(116.0);
+  EXPECT_EQ(contents(*monitor_->currentScene()), "3:3 ") << "stale, and kept";
+  expectReason({"Topic /dropped is stale", "Topic /kept is stale", "its timeout is 5 s: check"});
+
+  dropped.say(array({cube("map", 4, 4.0)}));
+  kept.say(array({cube("map", 5, 5.0)}));
+  EXPECT_TRUE(holds("4:4 3:3 5:5 "));
+  EXPECT_TRUE(becomes(true));
+}
+
+TEST_F(SceneMonitorClock, DropsOldBoxesEvenIfTheNextMessageComesFirst) {
+  setTime(120.0);
+  parameters_.box_topics[0].timeout = 1.0;
+  parameters_.box_topics[0].drop_stale = true;
+  start();
+  say({cube("map", 1, 1.0)});
+  ASSERT_TRUE(hasBoxes(*monitor_, 1));
+  // The worker looks every 50 ms: in most rounds the message is there before.
+  for (int round = 2; round < 12; ++round) {
+    setTime(120.0 + 2.0 * round);
+    say({cube("map", round, round)});
+    ASSERT_TRUE(eventually(
+        [&] { return monitor_->statistics().messages == static_cast<std::uint64_t>(round); }));
+    ASSERT_TRUE(holds(std::to_string(round) + ":" + std::to_string(round) + " "));
+  }
+  EXPECT_EQ(monitor_->statistics().dropped_boxes, 10U);
+}
+
 TEST_F(SceneMonitorClock, LooksUpTransformsWhileTheClockStands) {
   setTime(200.0);
   listen();

@@ -77,6 +77,7 @@ TEST(Parameters, TakeTopicsAsNamesOrStructs) {
   walls["topic"] = "/static/walls";
   walls["timeout"] = 2;
   walls["required"] = false;
+  walls["drop_stale"] = true;
   const Parameters read = readValues(structOf("box_topics", listOf({XmlRpcValue("boxes"), walls})));
   ASSERT_EQ(read.box_topics.size(), 2U);
   EXPECT_EQ(read.box_topics[0].topic, "boxes");
@@ -85,6 +86,8 @@ TEST(Parameters, TakeTopicsAsNamesOrStructs) {
   EXPECT_EQ(read.box_topics[1].topic, "/static/walls");
   EXPECT_EQ(read.box_topics[1].timeout, 2.0);
   EXPECT_FALSE(read.box_topics[1].required);
+  EXPECT_FALSE(read.box_topics[0].drop_stale);
+  EXPECT_TRUE(read.box_topics[1].drop_stale);
 }
 
 TEST(Parameters, RefusalsNameTheParameterItsValueAndWhatIsAllowed) {
@@ -122,7 +125,8 @@ TEST(Parameters, RefusalsNameTheParameterItsValueAndWhatIsAllowed) {
       {"box_topics", listOf({XmlRpcValue("a b")}), "/node/box_topics[0]", "\"a b\"", "name"},
       {"box_topics", listOf({XmlRpcValue("~a")}), "/node/box_topics[0]", "\"~a\"", "relative"},
       {"box_topics", listOf({no_topic}), "/node/box_topics[0]", "timeout", "topic"},
-      {"box_topics", listOf({typo}), "/node/box_topics[0]/time_out", "1", "timeout and required"},
+      {"box_topics", listOf({typo}), "/node/box_topics[0]/time_out", "1",
+       "timeout, required and drop_stale"},
       {"box_topics", listOf({late}), "/node/box_topics[0]/timeout", "-1", "0 to 1000000000 [s]"},
       {"box_topics", listOf({maybe}), "/node/box_topics[0]/required", "1", "true or false"},
       {"box_topics", listOf({XmlRpcValue("a"), XmlRpcValue("/a")}), "/node/box_topics[1]", "\"/a\"",

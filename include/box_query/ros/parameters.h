@@ -23,6 +23,9 @@ struct TopicParameters {
   double timeout = 0.0;
   /// Whether a scene without this topic is incomplete.
   bool required = true;
+  /// Whether its boxes are dropped when it becomes stale, until they are sent again; else they
+  /// stay.
+  bool drop_stale = false;
 };
 
 struct Parameters {
