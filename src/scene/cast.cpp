@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "geometry/aligned_form.h"
 #include "geometry/solve.h"
 #include "scene/scene_impl.h"
 #include "scene/search.h"
@@ -76,13 +77,13 @@ void Scene::Impl::offerAll(FirstEntered<Ray>& first, double max_range, const Box
 
 Hit Scene::Impl::hitOf(const Ray& ray, double max_range, const BoxMask* mask,
                        const kernels::Found* found) const {
-  FirstEntered<Ray> first(ray, simplest, prepared);
+  FirstEntered<Ray> first(ray, boxes);
   offerAll(first, max_range, mask, found);
   if (!first.any()) {
     return {};
   }
-  return box_query::hitOf(ray, first.component(), first.box(), boxes[first.box()],
-                          simplest[first.box()], first.solution(), max_range);
+  return box_query::hitOf(ray, first.component(), first.box(), boxes.given()[first.box()],
+                          boxes.simplest(first.box()), first.solution(), max_range);
 }
 
 ClosestBox Scene::Impl::closestOf(const Ray& ray, double max_range, const BoxMask* mask,
@@ -102,7 +103,7 @@ ClosestBox Scene::Impl::closestOf(const Ray& ray, double max_range, const BoxMas
 
 ClosestBox Scene::Impl::decidedClosestOf(const Ray& ray, double max_range, const BoxMask* mask,
                                          const kernels::Found* found) const {
-  FirstEntered<Ray> first(ray, simplest, prepared);
+  FirstEntered<Ray> first(ray, boxes);
   offerAll(first, max_range, mask, found);
   if (!first.any()) {
     return {};
@@ -112,7 +113,7 @@ ClosestBox Scene::Impl::decidedClosestOf(const Ray& ray, double max_range, const
           [&](const auto& box) {
             return isEnteredWithin(ray, box, first.solution(), max_range, directionLength(ray));
           },
-          simplest[first.box()])) {
+          boxes.simplest(first.box()))) {
     return {};
   }
   return {true, first.box(), first.lower(), first.upper()};
@@ -138,13 +139,14 @@ ClosestBox Scene::castClosest(const Ray& ray, double max_range,
 
 bool Scene::castAny(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
   return impl_->meetsAny(ray, max_range, mask, [&](std::size_t i) {
-    Solution solution = solveBox(ray, doubleComponent(ray), impl_->simplest[i], impl_->prepared[i]);
+    Solution solution =
+        solveBox(ray, doubleComponent(ray), impl_->boxes.simplest(i), impl_->boxes.prepared(i));
     return solution.num_points > 0 &&
            std::visit(
                [&](const auto& box) {
                  return isEnteredWithin(ray, box, solution, max_range, directionLength(ray));
                },
-               impl_->simplest[i]);
+               impl_->boxes.simplest(i));
   });
 }
 

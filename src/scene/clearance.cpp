@@ -63,9 +63,9 @@ const exact::Ratio& squaredDistance(const Segment& segment, const Box& box, Near
 }
 
 /// Exact order, ties by the index.
-bool isNearer(const Segment& segment, const std::vector<Box>& boxes, Nearby& a, Nearby& b) {
-  const int order =
-      compare(squaredDistance(segment, boxes[a.box], a), squaredDistance(segment, boxes[b.box], b));
+bool isNearer(const Segment& segment, const SceneBoxes& boxes, Nearby& a, Nearby& b) {
+  const int order = compare(squaredDistance(segment, boxes.simplest(a.box), a),
+                            squaredDistance(segment, boxes.simplest(b.box), b));
   return order < 0 || (order == 0 && a.box < b.box);
 }
 
@@ -90,13 +90,13 @@ const exact::Root& firstRoot(const Segment& segment, const Box& box, double radi
 }
 
 /// Exact order, ties by the index.
-bool isEarlier(const Segment& segment, const std::vector<Box>& boxes, double radius, Blocking& a,
+bool isEarlier(const Segment& segment, const SceneBoxes& boxes, double radius, Blocking& a,
                Blocking& b) {
   if (a.bounds.upper == 0.0 && b.bounds.upper == 0.0) {
     return a.box < b.box;  // both from the start
   }
-  const int order = compare(firstRoot(segment, boxes[a.box], radius, a),
-                            firstRoot(segment, boxes[b.box], radius, b));
+  const int order = compare(firstRoot(segment, boxes.simplest(a.box), radius, a),
+                            firstRoot(segment, boxes.simplest(b.box), radius, b));
   return order < 0 || (order == 0 && a.box < b.box);
 }
 
@@ -117,12 +117,12 @@ ParameterBounds firstWithinBounds(const NearestEstimate& estimate, double radius
 bool Scene::isClear(const Segment& segment, double radius, const BoxMask* mask) const noexcept {
   if (radius == 0.0 && segment.start != segment.end) {
     return !impl_->meetsAny(segment, std::numeric_limits<double>::infinity(), mask,
-                            [&](std::size_t i) { return meet(segment, impl_->simplest[i]); });
+                            [&](std::size_t i) { return meet(segment, impl_->boxes.simplest(i)); });
   }
   bool clear = true;
   impl_->forEachNear(segment, radius, false, mask, [&](std::size_t i) {
-    clear = isFartherThan(segment, impl_->simplest[i], estimateFor(segment, impl_->prepared[i]),
-                          radius);
+    clear = isFartherThan(segment, impl_->boxes.simplest(i),
+                          estimateFor(segment, impl_->boxes.prepared(i)), radius);
     return clear ? radius : -1.0;
   });
   return clear;
@@ -133,8 +133,8 @@ Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const no
   bool met = false;
   impl_->forEachNear(
       segment, std::numeric_limits<double>::infinity(), true, mask, [&](std::size_t i) {
-        const Box& box = impl_->simplest[i];
-        Nearby other(i, estimateFor(segment, impl_->prepared[i]));
+        const Box& box = impl_->boxes.simplest(i);
+        Nearby other(i, estimateFor(segment, impl_->boxes.prepared(i)));
         if (other.estimate.bounds.lower <= 0.0 && meet(segment, box)) {
           if (!met || i < nearest.box) {
             nearest = std::move(other);  // nothing is nearer
@@ -145,7 +145,7 @@ Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const no
         const DistanceBounds& a = nearest.estimate.bounds;
         const DistanceBounds& b = other.estimate.bounds;
         if (nearest.box == kNoBox || b.upper < a.lower ||
-            (!met && b.lower <= a.upper && isNearer(segment, impl_->simplest, other, nearest))) {
+            (!met && b.lower <= a.upper && isNearer(segment, impl_->boxes, other, nearest))) {
           nearest = std::move(other);
         }
         return met ? 0.0 : nearest.estimate.bounds.upper;
@@ -155,19 +155,19 @@ Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const no
   }
   const SegmentDistance d =
       std::visit([&](const auto& box) { return roundedDistance(segment, box, nearest.estimate); },
-                 impl_->simplest[nearest.box]);
+                 impl_->boxes.simplest(nearest.box));
   return {nearest.box, d.distance, d.t, d.on_segment, d.on_box};
 }
 
 Blockage Scene::Impl::firstMet(const Segment& segment, const BoxMask* mask) const {
-  FirstEntered<Segment> first(segment, simplest, prepared);
+  FirstEntered<Segment> first(segment, boxes);
   findFirst(first, std::numeric_limits<double>::infinity(), mask);
   if (!first.any()) {
     return {};
   }
   const double blocked_at = std::visit(
       [&](const auto& b) { return roundedParameter(segment, b, first.solution(), End::kEnter); },
-      simplest[first.box()]);
+      boxes.simplest(first.box()));
   return {true, first.box(), blocked_at};
 }
 
@@ -178,15 +178,15 @@ Blockage Scene::firstBlockage(const Segment& segment, double radius,
   }
   Blocking first;
   impl_->forEachNear(segment, radius, false, mask, [&](std::size_t i) {
-    const Box& box = impl_->simplest[i];
-    Blocking other(i, estimateFor(segment, impl_->prepared[i]));
+    const Box& box = impl_->boxes.simplest(i);
+    Blocking other(i, estimateFor(segment, impl_->boxes.prepared(i)));
     if (isFartherThan(segment, box, other.estimate, radius)) {
       return radius;
     }
     other.bounds = firstWithinBounds(other.estimate, radius);
     const bool is_earlier = first.box == kNoBox || other.bounds.upper < first.bounds.lower ||
                             (other.bounds.lower <= first.bounds.upper &&
-                             isEarlier(segment, impl_->simplest, radius, other, first));
+                             isEarlier(segment, impl_->boxes, radius, other, first));
     if (is_earlier) {
       first = std::move(other);
     }
@@ -195,8 +195,9 @@ Blockage Scene::firstBlockage(const Segment& segment, double radius,
   if (first.box == kNoBox) {
     return {};
   }
-  const double blocked_at = std::visit(
-      [&](const auto& box) { return blockedAt(segment, box, radius); }, impl_->simplest[first.box]);
+  const double blocked_at =
+      std::visit([&](const auto& box) { return blockedAt(segment, box, radius); },
+                 impl_->boxes.simplest(first.box));
   return {true, first.box, blocked_at};
 }
 

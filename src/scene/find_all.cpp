@@ -56,7 +56,7 @@ std::vector<BoxIntersection> Scene::Impl::findAll(const T& linear, const BoxMask
             addAlong(Ray{linear.origin, -linear.direction});
   }
   forEachOther(tree, taken, boxes.size(), mask, [&](std::size_t i) {
-    if (!enclose<T>(component, prepared[i]).isMiss()) {
+    if (!enclose<T>(component, boxes.prepared(i)).isMiss()) {
       maybe.push_back(static_cast<std::uint32_t>(i));
     }
     return true;
@@ -67,20 +67,21 @@ std::vector<BoxIntersection> Scene::Impl::findAll(const T& linear, const BoxMask
   std::vector<BoxIntersection> found;
   for (const std::uint32_t i : maybe) {
     BoxIntersection candidate{
-        i, std::visit([&](const auto& b) { return findIntersection(linear, b); }, boxes[i])};
+        i,
+        std::visit([&](const auto& b) { return findIntersection(linear, b); }, boxes.given()[i])};
     if (candidate.intersection.num_points > 0) {
       found.push_back(candidate);
     }
   }
   // Rounding keeps the order, but for the parameters that it makes equal. Found in order of the
   // index, ties stay in it.
-  std::stable_sort(found.begin(), found.end(),
-                   [&](const BoxIntersection& a, const BoxIntersection& b) {
-                     if (a.intersection.t_enter != b.intersection.t_enter) {
-                       return a.intersection.t_enter < b.intersection.t_enter;
-                     }
-                     return isEnteredBefore(linear, component, simplest[a.box], simplest[b.box]);
-                   });
+  std::stable_sort(
+      found.begin(), found.end(), [&](const BoxIntersection& a, const BoxIntersection& b) {
+        if (a.intersection.t_enter != b.intersection.t_enter) {
+          return a.intersection.t_enter < b.intersection.t_enter;
+        }
+        return isEnteredBefore(linear, component, boxes.simplest(a.box), boxes.simplest(b.box));
+      });
   return found;
 }
 

@@ -59,9 +59,7 @@ inline bool isSame(const Box& a, const Box& b) {
 template <typename T>
 class FirstEntered {
  public:
-  FirstEntered(const T& linear, const std::vector<Box>& boxes,
-               const std::vector<PreparedBox>& prepared)
-      : linear_(linear), boxes_(boxes), prepared_(prepared) {}
+  FirstEntered(const T& linear, const SceneBoxes& boxes) : linear_(linear), boxes_(boxes) {}
 
   const T& linear() const { return linear_; }
   /// In double, for whoever needs it.
@@ -88,7 +86,7 @@ class FirstEntered {
     }
     if (c.certain) {
       take({c.box, c.enter_lo, c.enter_hi, std::nullopt});
-    } else if (crossesThinSlab<T>(component(), prepared_[c.box])) {
+    } else if (crossesThinSlab<T>(component(), boxes_.prepared(c.box))) {
       take({c.box, c.enter_lo, c.exit_hi, std::nullopt});
     } else {
       Entry entry{c.box, c.enter_lo, c.exit_hi, std::nullopt};
@@ -99,7 +97,7 @@ class FirstEntered {
   }
   /// @param t_end a box that is certainly entered beyond it is none
   void offer(std::size_t index, double t_end) {
-    const kernels::Candidate c = candidateOf<T>(component(), prepared_[index], index);
+    const kernels::Candidate c = candidateOf<T>(component(), boxes_.prepared(index), index);
     if (c.enter_lo <= c.exit_hi && c.enter_lo <= t_end) {
       offer(c);
     }
@@ -146,8 +144,8 @@ class FirstEntered {
     for (int axis = 0; axis < 3; ++axis) {
       for (const bool positive : {false, true}) {
         if (entered.contains(axis, positive)) {
-          const auto face = worldPlane(boxes_[best_.box], axis, positive);
-          const auto front = worldPlane(boxes_[entry.box], axis, positive);
+          const auto face = worldPlane(boxes_.simplest(best_.box), axis, positive);
+          const auto front = worldPlane(boxes_.simplest(entry.box), axis, positive);
           if (face && front && face->hi == front->hi && face->lo == front->lo) {
             return true;
           }
@@ -158,24 +156,23 @@ class FirstEntered {
   }
 
   bool isBefore(Entry& a, Entry& b) {
-    if (isSame(boxes_[a.box], boxes_[b.box])) {
+    if (isSame(boxes_.simplest(a.box), boxes_.simplest(b.box))) {
       return a.box < b.box;  // as where two topics know of one thing
     }
-    const int order =
-        compareEntries(linear_, boxes_[a.box], solutionOf(a), boxes_[b.box], solutionOf(b));
+    const int order = compareEntries(linear_, boxes_.simplest(a.box), solutionOf(a),
+                                     boxes_.simplest(b.box), solutionOf(b));
     return order < 0 || (order == 0 && a.box < b.box);
   }
 
   Solution& solutionOf(Entry& e) {
     if (!e.solution) {
-      e.solution = solveBox(linear_, component(), boxes_[e.box], prepared_[e.box]);
+      e.solution = solveBox(linear_, component(), boxes_.simplest(e.box), boxes_.prepared(e.box));
     }
     return *e.solution;
   }
 
   const T& linear_;
-  const std::vector<Box>& boxes_;
-  const std::vector<PreparedBox>& prepared_;
+  const SceneBoxes& boxes_;
   std::optional<DoubleComponent> component_;
   Entry best_;
 };

@@ -5,6 +5,8 @@
 
 #include <box_query/geometry.h>
 
+#include <variant>
+
 namespace box_query {
 
 /// A box of a Scene as the filter sees it, oriented or aligned.
@@ -20,6 +22,11 @@ struct PreparedBox {
       : kind(isModerate(box) ? Kind::kOriented : Kind::kExactOnly),
         compact(isCompact(box)),
         oriented(doubleSlabs(box)) {}
+
+  explicit PreparedBox(const Box& box)
+      : PreparedBox(std::holds_alternative<AlignedBox>(box)
+                        ? PreparedBox(*std::get_if<AlignedBox>(&box))
+                        : PreparedBox(*std::get_if<OrientedBox>(&box))) {}
 
   /// kExactOnly: not moderate.
   Kind kind;

@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <variant>
 
 namespace box_query {
 
@@ -18,15 +17,11 @@ void BoxMask::set(std::size_t box, bool look) noexcept {
   words_[box / 64] = look ? words_[box / 64] | bit : words_[box / 64] & ~bit;
 }
 
-Scene::Impl::Impl(std::vector<Box> all) : boxes(std::move(all)), simplest(boxes) {
+Scene::Impl::Impl(std::vector<Box> all) : boxes(std::move(all)) {
+  std::vector<PreparedBox> prepared;
   prepared.reserve(boxes.size());
-  for (Box& box : simplest) {
-    if (const auto* oriented = std::get_if<OrientedBox>(&box)) {
-      if (const auto form = alignedForm(*oriented)) {
-        box = form->box;
-      }
-    }
-    prepared.push_back(std::visit([](const auto& b) { return PreparedBox(b); }, box));
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    prepared.push_back(boxes.prepared(i));
   }
   tree = BoxTree(prepared);
   view = tree.view();
@@ -62,7 +57,7 @@ std::size_t Scene::size() const noexcept {
   return impl_->boxes.size();
 }
 const std::vector<Box>& Scene::boxes() const noexcept {
-  return impl_->boxes;
+  return impl_->boxes.given();
 }
 
 }  // namespace box_query

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "geometry/aligned_form.h"
-#include "geometry/prepared_box.h"
 #include "kernels/kernels.h"
 #include "scene/box_tree.h"
-#include "scene/prepared_boxes.h"
+#include "scene/scene_boxes.h"
 
 #include <box_query/scene.h>
 
@@ -60,11 +58,7 @@ struct Scene::Impl {
   template <typename T>
   std::vector<BoxIntersection> findAll(const T& linear, const BoxMask* mask) const;
 
-  std::vector<Box> boxes;
-  std::vector<PreparedBox> prepared;
-  /// The boxes with those oriented ones that are aligned, exactly, in that form: what queries are
-  /// solved against. Only faces and normals need the box itself.
-  std::vector<Box> simplest;
+  SceneBoxes boxes;
   BoxTree tree;
   kernels::SceneView view;
   const kernels::Kernels& kernels = kernels::active();

@@ -82,7 +82,7 @@ bool Scene::Impl::meetsAny(const T& linear, double max_range, const BoxMask* mas
   const Reach reach = reachOf(component, max_range);
   for (const bool slowly : {false, true}) {
     forEachOther(tree, taken, boxes.size(), mask, [&](std::size_t i) {
-      const kernels::Candidate c = candidateOf<T>(component, prepared[i], i);
+      const kernels::Candidate c = candidateOf<T>(component, boxes.prepared(i), i);
       if (c.enter_lo <= c.exit_hi && c.enter_lo <= reach.outside) {
         undecided.met = slowly ? decide(i) : c.certain && c.enter_hi <= reach.inside;
       }

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/scene_boxes.h"
+
+#include "geometry/aligned_form.h"
+
+#include <utility>
+#include <variant>
+
+namespace box_query {
+
+SceneBoxes::SceneBoxes(std::vector<Box> boxes) : given_(std::move(boxes)) {
+  for (std::size_t i = 0; i < given_.size(); ++i) {
+    if (const auto* oriented = std::get_if<OrientedBox>(&given_[i])) {
+      if (const auto form = alignedForm(*oriented)) {
+        form_of_.resize(given_.size(), kItself);
+        form_of_[i] = static_cast<std::uint32_t>(forms_.size());
+        forms_.emplace_back(form->box);
+      }
+    }
+  }
+}
+
+}  // namespace box_query
