@@ -139,7 +139,7 @@ void answer(const CastRaysRequest& request, Context& context, CastRaysResponse& 
     return hit;
   };
   const auto answerOne = [&](std::size_t i) {
-    checkRunning();
+    checkRunning(context.stopping);
     const Hit hit = cast(rayOf(i), rangeOf(i));
     response.hits[i] = hit.hit;
     if (closest) {

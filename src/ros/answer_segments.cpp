@@ -169,7 +169,7 @@ void answer(const CheckSegmentsRequest& request, Context& context,
     return segmentIn(context, request.points[start], request.points[end], {"points", start});
   };
   const auto answerOne = [&](std::size_t i, bool is_drawn) {
-    checkRunning();
+    checkRunning(context.stopping);
     const Segment segment = segmentOf(i);
     const double radius = request.radii.empty() ? 0.0 : elementAt(request.radii, i);
     Clearance nearest;

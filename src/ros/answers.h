@@ -15,6 +15,7 @@
 #include <box_query/GetScene.h>
 #include <box_query/ros/scene_monitor.h>
 
+#include <atomic>
 #include <cstddef>
 
 #include <ros/time.h>
@@ -38,6 +39,8 @@ struct Context {
   Drawing drawing;    ///< filled by the answer
   /// Threads that work on a batch: see forEachPart().
   int batch_threads = 1;
+  /// Set by a server that ends; null: none does.
+  const std::atomic<bool>* stopping = nullptr;
 };
 
 /// Fills the whole response but for `success` and `message`.

@@ -12,12 +12,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <boost/function.hpp>
 #include <boost/make_shared.hpp>
 #include <ros/advertise_service_options.h>
+#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/serialization.h>
 
@@ -78,11 +80,13 @@ class CheckedStream {
   std::uint32_t max_array_length_;
 };
 
-/// Advertises a service whose handler gets checked requests, and is called on `queue`.
+/// Advertises a service whose handler gets checked requests, and is called on `queue`. roscpp may
+/// still be handing over a request when the service has been shut down: the queue lives until that
+/// is done. Disable and clear it then, so that nothing keeps it for good.
 template <class Service>
 ros::ServiceServer advertiseChecked(
     ros::NodeHandle& nh, const std::string& name, std::uint32_t max_array_length,
-    ros::CallbackQueueInterface& queue,
+    const std::shared_ptr<ros::CallbackQueue>& queue,
     const boost::function<bool(CheckedRequest<typename Service::Request>&,
                                typename Service::Response&)>& handler) {
   using Request = CheckedRequest<typename Service::Request>;
@@ -93,10 +97,10 @@ ros::ServiceServer advertiseChecked(
   options.datatype = ros::service_traits::datatype<Service>();
   options.req_datatype = ros::message_traits::datatype<typename Service::Request>();
   options.res_datatype = ros::message_traits::datatype<Response>();
-  options.callback_queue = &queue;
+  options.callback_queue = queue.get();
   options.helper =
       boost::make_shared<ros::ServiceCallbackHelperT<ros::ServiceSpec<Request, Response>>>(
-          handler, [max_array_length] {
+          handler, [max_array_length, queue] {
             auto request = boost::make_shared<Request>();
             request->max_array_length = max_array_length;
             return request;

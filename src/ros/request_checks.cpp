@@ -73,8 +73,8 @@ void checkCount(const char* what, std::size_t count, std::size_t max_queries) {
   }
 }
 
-void checkRunning() {
-  if (ros::isShuttingDown()) {
+void checkRunning(const std::atomic<bool>* stopping) {
+  if (ros::isShuttingDown() || (stopping && stopping->load(std::memory_order_relaxed))) {
     throw std::runtime_error("the node shuts down: ask again when it is back");
   }
 }

@@ -7,6 +7,7 @@
 
 #include <box_query/geometry.h>
 
+#include <atomic>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -36,8 +37,9 @@ void checkRadius(const Field& field, double radius);
 void checkLength(const char* name, std::size_t length, std::size_t queries, bool may_be_empty);
 void checkCount(const char* what, std::size_t count, std::size_t max_queries);
 
-/// @throws std::runtime_error if the node shuts down: nobody would read the rest of a batch.
-void checkRunning();
+/// @throws std::runtime_error if the node shuts down, or the server that sets `stopping` does:
+/// nobody would read the rest of a batch.
+void checkRunning(const std::atomic<bool>* stopping);
 
 /// What all requests share.
 void checkHeader(const std_msgs::Header& header);

@@ -27,7 +27,7 @@ void Server::advertise(ros::NodeHandle& private_nh, const std::string& name) {
 Server::Server(ros::NodeHandle& private_nh, SceneMonitor& monitor)
     : monitor_(monitor),
       markers_(private_nh, monitor),
-      spinner_(static_cast<std::uint32_t>(monitor.parameters().service_threads), &queue_) {
+      spinner_(static_cast<std::uint32_t>(monitor.parameters().service_threads), queue_.get()) {
   advertise<CastRay>(private_nh, "cast_ray");
   advertise<CastRays>(private_nh, "cast_rays");
   advertise<CheckSegment>(private_nh, "check_segment");
@@ -46,6 +46,16 @@ Server::Server(ros::NodeHandle& private_nh, SceneMonitor& monitor)
   }
   ROS_INFO_STREAM("boxes of " << topics << " in frame " << monitor.parameters().fixed_frame
                               << " are asked for through " << services);
+}
+
+Server::~Server() {
+  stopping_ = true;
+  spinner_.stop();
+  for (ros::ServiceServer& service : services_) {
+    service.shutdown();
+  }
+  queue_->disable();
+  queue_->clear();
 }
 
 FrameChange Server::frameOf(const std_msgs::Header& header) const {
@@ -68,8 +78,9 @@ void Server::answerNow(const Request& request, Response& response) {
   check(request, static_cast<std::size_t>(monitor_.parameters().max_queries_per_call));
   const FrameChange frame = frameOf(request.header);
   const SnapshotPtr snapshot = monitor_.currentScene();
-  Context context = {*snapshot, ros::Time::now(), frame, markers_.drawing(),
-                     monitor_.parameters().batch_threads};
+  Context context = {
+      *snapshot, ros::Time::now(), frame, markers_.drawing(), monitor_.parameters().batch_threads,
+      &stopping_};
   answer(request, context, response);
   response.message = unknownNames(BoxFilter(request), *snapshot);
   markers_.show(context.drawing.take());

@@ -10,7 +10,9 @@
 #include <box_query/GetScene.h>
 #include <box_query/ros/scene_monitor.h>
 
+#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,10 @@ namespace box_query {
 class Server {
  public:
   Server(ros::NodeHandle& private_nh, SceneMonitor& monitor);
+  /// Waits for the answers that are being worked on, but not for the rest of a batch.
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
 
  private:
   template <class Service>
@@ -45,7 +51,8 @@ class Server {
 
   SceneMonitor& monitor_;
   Markers markers_;
-  ros::CallbackQueue queue_;
+  std::atomic<bool> stopping_{false};
+  std::shared_ptr<ros::CallbackQueue> queue_ = std::make_shared<ros::CallbackQueue>();
   std::vector<ros::ServiceServer> services_;
   ros::AsyncSpinner spinner_;
 };
