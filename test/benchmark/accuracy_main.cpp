@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "benchmark/accuracy.h"
-#include "benchmark/bars.h"
+#include "benchmark/accuracy_bars.h"
 #include "benchmark/report.h"
 
 #include <cstdio>

@@ -34,6 +34,9 @@ struct Workload {
 Workload makeWorkload(const std::string& kind, std::size_t boxes, std::size_t rays,
                       std::uint64_t seed);
 const std::vector<std::string>& workloadKinds();
+/// Blocks of sixteen boxes that stay in cache. "pairs": each ray meets about half of them; "pairs
+/// apart": rays that start outside go anywhere.
+Workload pairWorkload(bool apart, std::size_t rays, std::uint64_t seed);
 /// Every n-th of the recorded scenes in `directory`; empty if there are none.
 Workload recordedScenes(const std::string& directory, std::size_t every, std::size_t rays);
 
@@ -100,6 +103,8 @@ struct SpeedMethodKind {
 
 /// box_query first, then a plain scan, then the peers that were found.
 std::vector<SpeedMethodKind> speedMethods();
+/// box_query first, then what goes from box to box.
+std::vector<SpeedMethodKind> pairMethods();
 /// Of the peers, those that were not found and what is known of those that were, a line each.
 std::vector<std::string> peerNotes();
 
@@ -123,6 +128,7 @@ struct SpeedOptions {
   std::size_t sample = 500;  ///< Rays whose answers are compared, fewer where boxes are very many.
 };
 
-std::vector<SpeedRow> measureSpeed(const Workload& workload, const SpeedOptions& options);
+std::vector<SpeedRow> measureSpeed(const Workload& workload, const SpeedOptions& options,
+                                   const std::vector<SpeedMethodKind>& methods = speedMethods());
 
 }  // namespace box_query::benchmark

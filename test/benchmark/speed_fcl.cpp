@@ -41,7 +41,8 @@ class Fcl final : public SpeedMethod {
       return {data.result.isCollision() ? 0 : kNoBox};
     }
     fcl::CollisionObjectd segment = capsule(ray, kPathLength);
-    Nearest nearest{&segment, {}};
+    Nearest nearest;
+    nearest.segment = &segment;
     manager_.distance(&segment, &nearest, nearer);
     return {nearest.box, std::max(0.0, nearest.data.result.min_distance)};
   }
@@ -51,7 +52,7 @@ class Fcl final : public SpeedMethod {
 
  private:
   struct Nearest {
-    const fcl::CollisionObjectd* segment;
+    const fcl::CollisionObjectd* segment = nullptr;
     fcl::DefaultDistanceData<double> data;
     std::size_t box = kNoBox;
   };

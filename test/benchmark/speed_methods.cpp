@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "benchmark/methods_slab.h"
 #include "benchmark/speed_peers.h"
-
-#include <algorithm>
-#include <limits>
+#include "benchmark/speed_scans.h"
 
 namespace box_query::benchmark {
 namespace {
-
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 class Ours final : public SpeedMethod {
  public:
@@ -49,49 +44,6 @@ class Ours final : public SpeedMethod {
   Scene scene_;
 };
 
-/// One plain slab test in double after the other.
-class Scan final : public SpeedMethod {
- public:
-  explicit Scan(const std::vector<OrientedBox>& boxes) {
-    for (const OrientedBox& box : boxes) {
-      boxes_.push_back(slabBox<double>(box));
-    }
-  }
-
-  bool canAnswer(Question question) const override { return question != Question::kClearance; }
-  SpeedAnswer ask(Question question, const Ray& ray) const override {
-    const bool any = question == Question::kAny30 || question == Question::kSegment;
-    SlabComponent<double> component = slabComponent<double>(ray);
-    component.t_max = question == Question::kClosest   ? kInf
-                      : question == Question::kSegment ? kSegmentLength
-                                                       : kRange;
-    if (question == Question::kAll30) {
-      return allOf(static_cast<std::size_t>(
-          std::count_if(boxes_.begin(), boxes_.end(), [&](const SlabBox<double>& box) {
-            return clipBySlabs<double, NoPad>(component, box).hit;
-          })));
-    }
-    SpeedAnswer result;
-    for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      const Answer answer = clipBySlabs<double, NoPad>(component, boxes_[i]);
-      if (answer.hit && (any || result.box == kNoBox || answer.t < component.t_max)) {
-        result = {i, question == Question::kRounded30 ? answer.t : 0.0};
-        component.t_max = answer.t;
-        if (any) {
-          return {0};
-        }
-      }
-    }
-    return result;
-  }
-  std::uint64_t pass(Question question, const std::vector<Ray>& rays) const override {
-    return passOf(*this, question, rays);
-  }
-
- private:
-  std::vector<SlabBox<double>> boxes_;
-};
-
 }  // namespace
 
 const char* nameOf(Question question) {
@@ -118,11 +70,18 @@ const char* nameOf(Question question) {
 
 std::vector<SpeedMethodKind> speedMethods() {
   std::vector<SpeedMethodKind> methods = {{"box_query", makeMethod<Ours>},
-                                          {"plain scan", makeMethod<Scan>, false}};
+                                          {"plain scan", makeScan, false}};
   for (const Peer& peer : peers()) {
     methods.insert(methods.end(), peer.methods.begin(), peer.methods.end());
   }
   return methods;
+}
+
+std::vector<SpeedMethodKind> pairMethods() {
+  return {{"box_query", makeMethod<Ours>},
+          {"double slabs, one by one", makeScan, false},
+          {"double slabs, eight at once", makeSlabsOfEight, false},
+          {"listing 9, one by one", makeFindScan, false}};
 }
 
 std::vector<std::string> peerNotes() {

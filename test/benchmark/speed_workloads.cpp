@@ -81,6 +81,25 @@ Workload makeWorkload(const std::string& kind, std::size_t boxes, std::size_t ra
   return {kind, {withRays(std::move(all), rays, sampler)}};
 }
 
+Workload pairWorkload(bool apart, std::size_t rays, std::uint64_t seed) {
+  Sampler sampler(seed);
+  Workload workload{apart ? "pairs apart" : "pairs", {}};
+  for (int block = 0; block < 16; ++block) {
+    SpeedScene scene;
+    while (scene.boxes.size() < 16) {
+      scene.boxes.push_back(
+          {sampler.vector(-0.5, 0.5), sampler.rotation(), sampler.vector(0.5, 1.5)});
+    }
+    while (scene.rays.size() < rays / 16) {
+      const Vector3 origin = 5.0 * sampler.direction().normalized();
+      const Vector3 along = apart ? sampler.direction() : sampler.vector(-1.2, 1.2) - origin;
+      scene.rays.push_back({origin, along.normalized()});
+    }
+    workload.scenes.push_back(std::move(scene));
+  }
+  return workload;
+}
+
 Workload recordedScenes(const std::string& directory, std::size_t every, std::size_t rays) {
   Workload workload{"recorded", {}};
   Sampler sampler(3);

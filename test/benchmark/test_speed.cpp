@@ -2,8 +2,12 @@
 // That the benchmark of speed compares methods on questions with both answers, and finds none of
 // the library's wrong. No time is judged.
 #include "benchmark/speed.h"
+#include "benchmark/speed_bars.h"
+#include "benchmark/speed_report.h"
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -16,44 +20,117 @@ std::size_t count(const std::vector<SpeedRow>& rows, Question question, const st
   }));
 }
 
-void expectComparison(const SpeedRow& row) {
-  EXPECT_EQ(128U, row.asked);
-  EXPECT_GT(row.hits, 0U);
-  EXPECT_TRUE(row.hits < row.asked || row.question == Question::kClearance);
-  if (row.method == "box_query" || row.method == "plain scan") {
-    EXPECT_EQ(0U, row.wrong);  // The scan is in double, and boxes are not hostile.
+/// That there is a line for every method and every question that it can be asked.
+void expectAllRows(const std::vector<SpeedRow>& rows, const Workload& workload,
+                   const std::vector<SpeedMethodKind>& methods) {
+  for (const SpeedMethodKind& method : methods) {
+    for (const Question question : kQuestions) {
+      const bool expected = question == Question::kBuild
+                                ? method.is_built
+                                : method.make(workload.scenes[0].boxes)->canAnswer(question);
+      EXPECT_EQ(expected ? 1U : 0U, count(rows, question, method.name))
+          << nameOf(question) << ", " << method.name;
+    }
   }
-  // Peers have their own idea of a box: of a ray that starts in one (Bullet), of contact.
-  EXPECT_LT(row.wrong, row.asked / 4);
+}
+
+void expectNothingWrong(const std::vector<SpeedRow>& rows) {
+  for (const SpeedRow& row : rows) {
+    SCOPED_TRACE(row.workload + ", " + nameOf(row.question) + ", " + row.method);
+    EXPECT_GT(row.timing.ns.median, 0.0);
+    EXPECT_TRUE(row.method != "box_query" || row.timing.ratio.median == 1.0);
+    if (row.question == Question::kBuild) {
+      continue;
+    }
+    EXPECT_EQ(128U, row.asked);
+    EXPECT_GT(row.hits, 0U);
+    const bool is_plain = row.method.rfind("double slab", 0) == 0 || row.method == "plain scan";
+    if (row.method == "box_query" || is_plain) {
+      EXPECT_EQ(0U, row.wrong);  // Plain ones are in double, and boxes are not hostile.
+    }
+    // Peers have their own idea of a box: of a ray that starts in one (Bullet), of contact.
+    EXPECT_LT(row.wrong, row.asked / 4);
+  }
 }
 
 TEST(Speed, ComparesMethodsOnHitsAndMissesAndFindsNothingWrong) {
   for (const std::string& kind : workloadKinds()) {
     for (const std::size_t boxes : {40, 300}) {
       const Workload workload = makeWorkload(kind, boxes, 128, 5);
-      const std::vector<SpeedRow> rows = measureSpeed(workload, {1, 128});
+      const std::vector<SpeedRow> rows = measureSpeed(workload, {1, 128}, speedMethods());
+      expectAllRows(rows, workload, speedMethods());
+      expectNothingWrong(rows);
       for (const SpeedRow& row : rows) {
-        SCOPED_TRACE(kind + ", " + nameOf(row.question) + ", " + row.method);
         EXPECT_EQ(boxes, row.boxes);
-        EXPECT_GT(row.timing.ns.median, 0.0);
-        if (row.method == "box_query") {
-          EXPECT_EQ(1.0, row.timing.ratio.median);
-        }
-        if (row.question != Question::kBuild) {
-          expectComparison(row);
-        }
-      }
-      for (const SpeedMethodKind& method : speedMethods()) {
-        for (const Question question : kQuestions) {
-          const bool expected = question == Question::kBuild
-                                    ? method.is_built
-                                    : method.make(workload.scenes[0].boxes)->canAnswer(question);
-          EXPECT_EQ(expected ? 1U : 0U, count(rows, question, method.name))
-              << nameOf(question) << ", " << method.name;
-        }
+        EXPECT_TRUE(row.hits < row.asked || row.question == Question::kClearance ||
+                    row.question == Question::kBuild)
+            << kind;
       }
     }
   }
+}
+
+TEST(Speed, ComparesPairsWithPlainSlabsAndThePaper) {
+  for (const bool apart : {false, true}) {
+    const Workload workload = pairWorkload(apart, 256, 5);
+    const std::vector<SpeedRow> rows = measureSpeed(workload, {1, 128}, pairMethods());
+    expectAllRows(rows, workload, pairMethods());
+    expectNothingWrong(rows);
+    for (const SpeedRow& row : rows) {
+      EXPECT_EQ(16U, row.boxes);
+    }
+  }
+}
+
+SpeedRow rowOf(const std::string& workload, std::size_t boxes, Question question,
+               const std::string& method, double ns, double ratio) {
+  SpeedRow row{workload, boxes, question, method, {}};
+  row.timing.ns.median = ns;
+  row.timing.ratio.median = ratio;
+  return row;
+}
+
+TEST(SpeedBars, TakeTheBestOfAPeersWaysInTheWorstOfTheScenes) {
+  const std::vector<Bar> bars = speedBars(
+      {rowOf("sparse", 8, Question::kClosest30, "box_query", 20, 1.0),
+       rowOf("sparse", 8, Question::kClosest30, "Embree, boxes", 40, 2.0),
+       rowOf("sparse", 8, Question::kClosest30, "Embree, triangles", 36, 1.8),
+       rowOf("dense", 16, Question::kClosest30, "Embree, boxes", 34, 1.7),
+       rowOf("dense", 16, Question::kClosest, "Embree, boxes", 20, 1.0),  // another question
+       rowOf("dense", 64, Question::kClosest30, "Embree, boxes", 26, 1.3),
+       rowOf("sparse", 10000, Question::kBuild, "box_query", 500, 1.0),
+       rowOf("dense", 10000, Question::kBuild, "box_query", 800, 1.0)});
+  ASSERT_EQ(3U, bars.size());
+  EXPECT_EQ(1.7, bars[0].figure);
+  EXPECT_EQ(1.5, bars[0].limit);
+  EXPECT_TRUE(bars[0].holds());
+  EXPECT_EQ(1.3, bars[1].figure);
+  EXPECT_EQ(1.4, bars[1].limit);
+  EXPECT_FALSE(bars[1].holds());
+  EXPECT_EQ(1.25, bars[2].figure);  // million boxes a second
+  EXPECT_FALSE(bars[2].holds());
+}
+
+TEST(SpeedBars, AreALineEachThatEndsInHoldsOrFallsShort) {
+  std::ostringstream out;
+  printBars({{"a", 1.25, Bar::kAtLeast, 1.2, "", "more"},
+             {"b", 1.25, Bar::kAtMost, 1.2, " ns", "more"},
+             {"c", std::nan(""), Bar::kAtLeast, 1.2, "", "more"}},
+            out);
+  EXPECT_EQ(
+      "a: 1.25, bar at least 1.2, holds  (more)\n"
+      "b: 1.25 ns, bar at most 1.2 ns, falls short  (more)\n"
+      "c: nan, bar at least 1.2, falls short  (more)\n",
+      out.str());
+}
+
+TEST(SpeedReport, IsALineARow) {
+  const SpeedRow row = rowOf("dense", 16, Question::kAny30, "Embree, boxes", 34, 1.7);
+  std::ostringstream csv;
+  writeCsv({row, row}, csv);
+  const std::string text = csv.str();
+  EXPECT_EQ(3, std::count(text.begin(), text.end(), '\n'));
+  EXPECT_NE(std::string::npos, text.find("dense,16,\"any, 30 m\",\"Embree, boxes\",34.0,")) << text;
 }
 
 TEST(Speed, SaysOfEveryPeerWhetherItWasFound) {

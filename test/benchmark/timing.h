@@ -35,7 +35,7 @@ using Pass = std::function<std::uint64_t()>;
 using Query = std::function<std::uint64_t(std::size_t i)>;
 
 /// @param queries in one pass; each turn runs passes for about 0.2 ms, after one that is not timed.
-///   A contender whose passes take long has fewer turns, for about a second in all.
+///   A contender whose passes take long has fewer turns, for about half a second in all.
 /// @throws std::runtime_error if a contender's sum changes from pass to pass.
 std::vector<Timing> timeSideBySide(const std::vector<Pass>& passes, std::size_t queries, int rounds,
                                    std::size_t base);

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "benchmark/speed_bars.h"
+
+#include "benchmark/format.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+namespace box_query::benchmark {
+namespace {
+
+constexpr std::size_t kAnySize = std::numeric_limits<std::size_t>::max();
+
+/// In every workload of some kinds and sizes: how many times our time the best of some methods
+/// takes.
+struct Promise {
+  const char* name;
+  Question question;
+  std::vector<std::string> kinds;  ///< None: all scenes.
+  std::size_t least;
+  std::size_t most;
+  std::vector<std::string> methods;  ///< How their names begin.
+  double limit;
+};
+
+const std::vector<std::string> kEven = {"sparse", "dense"};
+const std::vector<std::string> kAll = {};
+const std::vector<std::string> kEmbree = {"Embree"};
+
+const std::vector<Promise>& promises() {
+  static const std::vector<Promise> all = {
+      {"closest of 16 in cache, eight double slabs at once over ours",
+       Question::kClosest30,
+       {"pairs"},
+       0,
+       kAnySize,
+       {"double slabs, eight at once"},
+       1.0},
+      {"closest of 16 in cache, listing 9 over ours",
+       Question::kClosest30,
+       {"pairs"},
+       0,
+       kAnySize,
+       {"listing 9"},
+       10.0},
+      {"distance of 16 in cache, plain scalar one over ours",
+       Question::kClearance,
+       {"pairs apart"},
+       0,
+       kAnySize,
+       {"double slabs, one by one"},
+       10.0},
+      {"closest of 8 to 32, Embree over ours", Question::kClosest30, kEven, 8, 32, kEmbree, 1.5},
+      {"closest of recorded scenes, Embree over ours",
+       Question::kClosest30,
+       {"recorded", "merged"},
+       0,
+       kAnySize,
+       kEmbree,
+       1.5},
+      {"closest of 64 to 256, Embree over ours", Question::kClosest30, kEven, 64, 256, kEmbree,
+       1.4},
+      {"closest of 1,000 to 100,000 sparse, Embree over ours",
+       Question::kClosest30,
+       {"sparse"},
+       1000,
+       100000,
+       kEmbree,
+       1.3},
+      {"closest of 1,000 to 100,000 dense, Embree over ours",
+       Question::kClosest30,
+       {"dense"},
+       1000,
+       100000,
+       kEmbree,
+       1.5},
+      {"closest of 1,000 to 100,000 in clusters, Embree over ours",
+       Question::kClosest30,
+       {"clusters"},
+       1000,
+       100000,
+       kEmbree,
+       1.3},
+      {"closest of 1,000 to 100,000 needles, Embree over ours",
+       Question::kClosest30,
+       {"needles"},
+       1000,
+       100000,
+       kEmbree,
+       1.8},
+      {"closest of 1,000 to 100,000 shelves, Embree over ours",
+       Question::kClosest30,
+       {"shelves"},
+       1000,
+       100000,
+       kEmbree,
+       1.0},
+      {"any, Embree over ours", Question::kAny30, kAll, 0, kAnySize, kEmbree, 1.2},
+      {"segment, Embree over ours", Question::kSegment, kAll, 0, kAnySize, kEmbree, 1.2},
+      {"closest, Bullet over ours", Question::kClosest30, kAll, 0, kAnySize, {"Bullet"}, 8.0},
+      {"any, Bullet over ours", Question::kAny30, kAll, 0, kAnySize, {"Bullet"}, 8.0},
+      {"clearance of 8 to 128, Embree's point query over ours", Question::kClearance, kEven, 8, 128,
+       kEmbree, 2.0},
+      {"clearance of 1,000 and more, FCL and Bullet over ours",
+       Question::kClearance,
+       kEven,
+       1000,
+       kAnySize,
+       {"FCL", "Bullet"},
+       10.0},
+  };
+  return all;
+}
+
+bool beginsWithOneOf(const std::string& name, const std::vector<std::string>& beginnings) {
+  return std::any_of(beginnings.begin(), beginnings.end(),
+                     [&](const std::string& beginning) { return name.rfind(beginning, 0) == 0; });
+}
+
+bool contains(const std::vector<std::string>& all, const std::string& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+/// The best of the methods that count, in each workload, the worst first.
+std::vector<const SpeedRow*> cellsOf(const Promise& promise, const std::vector<SpeedRow>& rows) {
+  std::vector<const SpeedRow*> cells;
+  for (const SpeedRow& row : rows) {
+    if (row.question != promise.question || row.boxes < promise.least || row.boxes > promise.most ||
+        !beginsWithOneOf(row.method, promise.methods) ||
+        (!promise.kinds.empty() && !contains(promise.kinds, row.workload))) {
+      continue;
+    }
+    const auto same = std::find_if(cells.begin(), cells.end(), [&](const SpeedRow* cell) {
+      return cell->workload == row.workload && cell->boxes == row.boxes;
+    });
+    if (same == cells.end()) {
+      cells.push_back(&row);
+    } else if (row.timing.ratio.median < (*same)->timing.ratio.median) {
+      *same = &row;
+    }
+  }
+  std::sort(cells.begin(), cells.end(), [](const SpeedRow* a, const SpeedRow* b) {
+    return a->timing.ratio.median < b->timing.ratio.median;
+  });
+  return cells;
+}
+
+std::optional<Bar> barOf(const Promise& promise, const std::vector<SpeedRow>& rows) {
+  const std::vector<const SpeedRow*> cells = cellsOf(promise, rows);
+  if (cells.empty()) {
+    return std::nullopt;
+  }
+  constexpr std::size_t kShown = 6;
+  std::string beside;
+  for (std::size_t i = 0; i < std::min(kShown, cells.size()); ++i) {
+    beside += format("%s%s %zu: %.2f", i == 0 ? "" : ", ", cells[i]->workload.c_str(),
+                     cells[i]->boxes, cells[i]->timing.ratio.median);
+  }
+  if (cells.size() > kShown) {
+    beside +=
+        format(", %zu more up to %.2f", cells.size() - kShown, cells.back()->timing.ratio.median);
+  }
+  return Bar{promise.name, cells.front()->timing.ratio.median, Bar::kAtLeast, promise.limit, "",
+             beside};
+}
+
+/// Of the scenes of 10,000 boxes.
+std::optional<Bar> buildBar(const std::vector<SpeedRow>& rows) {
+  double slowest = std::numeric_limits<double>::infinity();
+  std::string beside;
+  for (const SpeedRow& row : rows) {
+    if (row.question == Question::kBuild && row.method == "box_query" && row.boxes == 10000) {
+      const double millions = 1e3 / row.timing.ns.median;
+      slowest = std::min(slowest, millions);
+      beside += (beside.empty() ? "" : ", ") + row.workload + format(": %.2f", millions);
+    }
+  }
+  if (beside.empty()) {
+    return std::nullopt;
+  }
+  return Bar{"build of 10,000, a second", slowest, Bar::kAtLeast, 1.5, " million boxes", beside};
+}
+
+}  // namespace
+
+std::vector<Bar> speedBars(const std::vector<SpeedRow>& rows) {
+  std::vector<Bar> bars;
+  for (const Promise& promise : promises()) {
+    if (const auto bar = barOf(promise, rows)) {
+      bars.push_back(*bar);
+    }
+  }
+  if (const auto bar = buildBar(rows)) {
+    bars.push_back(*bar);
+  }
+  return bars;
+}
+
+}  // namespace box_query::benchmark
