@@ -97,6 +97,16 @@ struct Blockage {
   double blocked_at = std::numeric_limits<double>::infinity();
 };
 
+/// How a scene was made from the one before: see Scene::updated().
+struct SceneUpdate {
+  /// Everything was organised anew, which is what the constructor does.
+  bool rebuilt = true;
+  /// Boxes that were other ones before, that were not there, and that are not here any more.
+  std::size_t moved = 0;
+  std::size_t added = 0;
+  std::size_t removed = 0;
+};
+
 /// Which kernels scenes use: "avx512", "avx2" or "portable". They are the widest that the CPU has,
 /// or those that the environment variable BOX_QUERY_KERNEL names; answers are the same bits with
 /// each.
@@ -124,6 +134,18 @@ class Scene {
   Scene& operator=(const Scene&);
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
+
+  /// The scene of other boxes: the same as a new one, made in less time where most of them are
+  /// boxes of this scene, unchanged or moved. It is organised like this one, with new bounds; where
+  /// that would be bad for queries, anew.
+  /// @param previous of each box its index in this scene, no index twice, or kNoBox for a box that
+  /// was not there
+  /// @throws std::invalid_argument naming the first box that is not valid, or where `previous` is
+  /// not as above.
+  Scene updated(std::vector<Box> boxes, const std::vector<std::size_t>& previous) const;
+
+  /// How it was made.
+  const SceneUpdate& update() const noexcept;
 
   std::size_t size() const noexcept;
   const std::vector<Box>& boxes() const noexcept;
@@ -177,6 +199,8 @@ class Scene {
 
  private:
   struct Impl;
+  explicit Scene(std::shared_ptr<const Impl> impl);
+
   std::shared_ptr<const Impl> impl_;
 };
 

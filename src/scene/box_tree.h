@@ -4,14 +4,33 @@
 #pragma once
 
 #include "kernels/scene_view.h"
+#include "scene/box_bounds.h"
 #include "scene/prepared_boxes.h"
+#include "scene/scene_boxes.h"
+#include "scene/tree_nodes.h"
 
 #include <box_query/geometry.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace box_query {
+
+/// What is different in boxes that come after others.
+struct BoxChanges {
+  static constexpr std::uint32_t kGone = ~std::uint32_t{0};
+
+  /// Of each box before, its number now, or kGone.
+  std::vector<std::uint32_t> now;
+  /// Of each box now, whether it was another before, or none.
+  std::vector<bool> is_new;
+  /// Boxes that were none before.
+  std::vector<std::uint32_t> added;
+  std::size_t moved = 0;
+  std::size_t removed = 0;
+};
 
 /// A tree of sixteen children a node, all leaves at the same depth; up to 128 boxes are one list,
 /// and the first few of them are kept in blocks too.
@@ -20,6 +39,11 @@ class BoxTree {
   BoxTree() = default;
   explicit BoxTree(const std::vector<PreparedBox>& boxes);
 
+  /// The tree of boxes that come after those of this tree: the same nodes with other bounds, and
+  /// one more root for those that are added. Nothing where a new tree is the better one, since
+  /// there are few boxes, or boxes that kernels may not take, or too much has changed.
+  std::optional<BoxTree> updated(const SceneBoxes& boxes, const BoxChanges& changes) const;
+
   /// Valid as long as this tree is neither changed nor moved.
   kernels::SceneView view() const;
 
@@ -27,14 +51,22 @@ class BoxTree {
   const std::vector<std::uint32_t>& left_out() const { return left_out_; }
 
  private:
-  friend class TreeBuilder;
+  template <typename PreparedOf>
+  void addRecords(const std::vector<Item>& items, PreparedOf&& preparedOf) {
+    records_.reserve(records_.size() + items.size());
+    box_of_record_.reserve(records_.size() + items.size());
+    for (const Item& item : items) {
+      records_.push_back(recordOf(preparedOf(item.box)));
+      has_aligned_ = has_aligned_ || records_.back().isAligned();
+      box_of_record_.push_back(item.box);
+    }
+  }
+  void measure();
+  void dropAppended();
+  bool moveBoxes(const SceneBoxes& boxes, const BoxChanges& changes);
+  void refit();
 
-  struct Nodes {
-    std::vector<kernels::Bounds> bounds;
-    std::vector<std::uint32_t> first;
-  };
-
-  std::vector<Nodes> levels_;
+  std::vector<TreeNodes> levels_;
   std::vector<kernels::BoxBlock> blocks_;
   std::vector<kernels::BoxRecord> records_;
   std::vector<std::uint32_t> box_of_record_;
@@ -43,6 +75,13 @@ class BoxTree {
   double around_[2][3] = {};
   bool has_aligned_ = false;
   double mean_free_path_ = 0.0;
+  /// Areas of the nodes over that of the whole: what a ray has to compare.
+  double cost_ = 0.0;
+
+  /// What of it was built, and not appended by updates; and its cost then.
+  std::vector<std::size_t> built_nodes_;
+  std::size_t built_records_ = 0;
+  double built_cost_ = 0.0;
 };
 
 }  // namespace box_query

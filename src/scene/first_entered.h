@@ -42,19 +42,6 @@ inline std::optional<exact::DoubleDouble> worldPlane(const Box& any, int axis, b
   return exact::twoSum(box.center[axis], positive ? extent : -extent);
 }
 
-/// Whether two boxes are the same numbers.
-inline bool isSame(const Box& a, const Box& b) {
-  if (const auto* first = std::get_if<AlignedBox>(&a)) {
-    const auto* second = std::get_if<AlignedBox>(&b);
-    return second != nullptr && first->min == second->min && first->max == second->max;
-  }
-  const auto& first = *std::get_if<OrientedBox>(&a);
-  const auto* second = std::get_if<OrientedBox>(&b);
-  return second != nullptr && first.center == second->center &&
-         first.half_extents == second->half_extents &&
-         first.orientation.coeffs() == second->orientation.coeffs();
-}
-
 /// Takes boxes in any order; of those that are entered first the one of the lowest index stays.
 template <typename T>
 class FirstEntered {

@@ -9,9 +9,23 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <variant>
 #include <vector>
 
 namespace box_query {
+
+/// Whether two boxes are the same numbers.
+inline bool isSame(const Box& a, const Box& b) {
+  if (const auto* first = std::get_if<AlignedBox>(&a)) {
+    const auto* second = std::get_if<AlignedBox>(&b);
+    return second != nullptr && first->min == second->min && first->max == second->max;
+  }
+  const auto& first = *std::get_if<OrientedBox>(&a);
+  const auto* second = std::get_if<OrientedBox>(&b);
+  return second != nullptr && first.center == second->center &&
+         first.half_extents == second->half_extents &&
+         first.orientation.coeffs() == second->orientation.coeffs();
+}
 
 /// What can be worked out of a box is not kept: it takes less time than to wait for it from memory.
 class SceneBoxes {

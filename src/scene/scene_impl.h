@@ -16,6 +16,8 @@ class FirstEntered;
 
 struct Scene::Impl {
   explicit Impl(std::vector<Box> all);
+  /// What comes after `before`.
+  Impl(const Impl& before, std::vector<Box> all, const std::vector<std::size_t>& previous);
 
   /// firstBlockage() for radius 0.
   Blockage firstMet(const Segment& segment, const BoxMask* mask) const;
@@ -60,6 +62,7 @@ struct Scene::Impl {
 
   SceneBoxes boxes;
   BoxTree tree;
+  SceneUpdate update;
   kernels::SceneView view;
   const kernels::Kernels& kernels = kernels::active();
 };

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/box_bounds.h"
+
+#include "kernels/float_bounds.h"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace box_query {
+namespace {
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+/// More than what rounding takes from a bound, relative to |middle| + half: the axes are within 10
+/// units of 2^-53, and a difference in double and a float follow.
+constexpr double kOutward = 0x1p-23;
+
+}  // namespace
+
+Extent extentOf(const PreparedBox& box) {
+  Extent r;
+  if (box.kind == PreparedBox::Kind::kAligned) {
+    for (int j = 0; j < 3; ++j) {
+      r.middle[j] = 0.5 * (box.aligned.bound[0][j] + box.aligned.bound[1][j]);
+      r.half[j] = 0.5 * (box.aligned.bound[1][j] - box.aligned.bound[0][j]);
+    }
+    return r;
+  }
+  const OrientedSlabs& slabs = box.oriented;
+  for (int j = 0; j < 3; ++j) {
+    r.middle[j] = slabs.center[j];
+    r.half[j] = std::fabs(slabs.axes[0][j]) * slabs.half_extents[0] +
+                std::fabs(slabs.axes[1][j]) * slabs.half_extents[1] +
+                std::fabs(slabs.axes[2][j]) * slabs.half_extents[2];
+  }
+  return r;
+}
+
+bool findBounds(const Extent& r, const double* center, FloatBounds& bounds) {
+  for (int j = 0; j < 3; ++j) {
+    const double middle = r.middle[j] - center[j];
+    // The middle of an aligned box is rounded at its own size, not at that of the difference.
+    const double slack =
+        kOutward * (std::fabs(middle) + r.half[j]) + 0x1p-50 * std::fabs(r.middle[j]) + 0x1p-100;
+    bounds.lo[j] = static_cast<float>((middle - r.half[j]) - slack);
+    bounds.hi[j] = static_cast<float>((middle + r.half[j]) + slack);
+    if (!(std::fabs(middle) + r.half[j] < kernels::kFarthestOrigin)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+kernels::BoxRecord recordOf(const PreparedBox& box) {
+  kernels::BoxRecord record = {};
+  if (box.kind == PreparedBox::Kind::kAligned) {
+    for (int i = 0; i < 3; ++i) {
+      record.column[0][i] = box.aligned.bound[0][i];
+      record.column[1][i] = box.aligned.bound[1][i];
+    }
+    record.extent[3] = -1.0;
+    return record;
+  }
+  for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      record.column[j][i] = box.oriented.axes[i][j];
+    }
+    record.column[j][3] = box.oriented.center[j];
+    record.extent[j] = box.oriented.half_extents[j];
+  }
+  record.extent[3] = box.oriented.padded_extent_sum;
+  return record;
+}
+
+/// Boxes in blocks; none if one of them is too far away, or too large.
+/// @pre every one is for the kernels
+std::vector<kernels::BoxBlock> blocksOf(const std::vector<kernels::BoxRecord>& records,
+                                        const double* scene_center) {
+  constexpr std::size_t kBlockSlots = kernels::kBlockSlots;
+  std::vector<kernels::BoxBlock> blocks((records.size() + kBlockSlots - 1) / kBlockSlots);
+  for (std::size_t k = 0; k < kBlockSlots * blocks.size(); ++k) {
+    kernels::BoxBlock& block = blocks[k / kBlockSlots];
+    const std::size_t slot = k % kBlockSlots;
+    if (k >= records.size()) {
+      for (int i = 0; i < 3; ++i) {
+        block.extent[i][slot] = -kInf;
+      }
+      continue;
+    }
+    const kernels::BoxRecord& box = records[k];
+    double extents[3];
+    double size = 0.0;
+    double pad = kernels::bounds::kFloatUnderflow;
+    for (int j = 0; j < 3; ++j) {
+      double middle = box.column[j][3];
+      extents[j] = box.extent[j];
+      for (int i = 0; i < 3; ++i) {
+        block.axis[i][j][slot] = static_cast<float>(box.column[j][i]);
+      }
+      if (box.isAligned()) {
+        middle = 0.5 * (box.column[0][j] + box.column[1][j]);
+        extents[j] = 0.5 * (box.column[1][j] - box.column[0][j]);
+        for (int i = 0; i < 3; ++i) {
+          block.axis[i][j][slot] = i == j ? 1.0F : 0.0F;
+        }
+        pad += 0x1p-50 * std::fabs(middle);  // it is rounded at its own size
+      }
+      const double relative = middle - scene_center[j];
+      block.center[j][slot] = static_cast<float>(relative);
+      size += std::fabs(relative) + extents[j];
+    }
+    if (!(size <= kernels::kFarthestInBlocks)) {
+      return {};
+    }
+    pad += kernels::bounds::kBlock * size;
+    for (int i = 0; i < 3; ++i) {
+      block.extent[i][slot] = static_cast<float>((extents[i] + pad) * kernels::bounds::kUp);
+    }
+  }
+  return blocks;
+}
+
+}  // namespace box_query
