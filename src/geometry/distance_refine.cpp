@@ -15,6 +15,7 @@
 #include "exact/bounds.h"
 #include "exact/double_double.h"
 #include "geometry/prepared_box.h"
+#include "kernels/kernels.h"
 
 namespace box_query {
 namespace {
@@ -186,11 +187,66 @@ double wideError(const SegmentSlabs& slabs, const DoubleDouble& n) {
   return bounds::kRow * 2.0 * n.hi * slabs.scale;
 }
 
-/// Ziv's test: the double that every number within `error` of x rounds to, if there is one.
-std::optional<double> rounded(const DoubleDouble& x, double error) {
-  const double low = x.hi + (x.lo - error);
-  const double high = x.hi + (x.lo + error);
+/// Ziv's test: the double that every number within `error` of x[0] + x[1] rounds to, if there is
+/// one.
+std::optional<double> rounded(const double* x, double error) {
+  const double low = x[0] + (x[1] - error);
+  const double high = x[0] + (x[1] + error);
   return low == high ? std::optional<double>(low) : std::nullopt;
+}
+
+bool refineByKernel(const Segment& segment, const OrientedBox& box, const SegmentSlabs& slabs,
+                    const NearestGuess& guess, bool inside, kernels::Refined& refined) {
+  const auto by_kernel = kernels::active().refine;
+  return by_kernel != nullptr &&
+         by_kernel({box.orientation.coeffs().data(), box.center.data(), box.half_extents.data(),
+                    segment.start.data(), segment.end.data(), guess.t, guess.excess.data(),
+                    slabs.scale, inside},
+                   refined);
+}
+bool refineByKernel(const Segment&, const AlignedBox&, const SegmentSlabs&, const NearestGuess&,
+                    bool, kernels::Refined&) {
+  return false;
+}
+
+/// One axis after the other.
+/// @return whether the box is taken
+template <typename BoxType>
+bool refine(const Segment& segment, const BoxType& box, const SegmentSlabs& slabs,
+            const NearestGuess& guess, bool inside, kernels::Refined& refined) {
+  const bool at_end = !inside && guess.t == 1.0;
+  const WideFrame<BoxType> frame(segment, at_end ? segment.end : segment.start, box);
+  const DoubleDouble n = frame.stretch();
+  if (!isInRange(n)) {
+    return false;
+  }
+  const WideValue f =
+      inside ? valueAt(frame, guess.t, guess.excess) : valueAtOrigin(frame, guess.excess);
+  const double eta = wideError(slabs, n);
+  double change = 0.0;
+  double curvature_error = 0.0;
+  double t_error = 0.0;
+  if (inside) {
+    const double inverse = 1.0 / f.curvature;
+    change = -f.slope.hi * inverse;
+    curvature_error = 16.0 * bounds::kUnit + 4.0 * eta * std::sqrt(inverse);
+    t_error = 4.0 * eta * (f.direction_sum + f.excess_sum) * inverse +
+              std::fabs(change) * curvature_error;
+  }
+  const DoubleDouble t = exact::twoSum(guess.t, change);
+
+  const double fall = change * change * f.curvature;
+  const DoubleDouble squared = exact::fastTwoSum(f.squared.hi, f.squared.lo - fall);
+  // One step of Newton's method for sqrt(squared) / n, with the rest in double-double.
+  const double root = std::sqrt(squared.hi) / n.hi;
+  const double factor = 0.5 / (root * n.hi * n.hi);
+  const DoubleDouble stretched = n * DoubleDouble{root, 0.0};
+  const DoubleDouble distance =
+      exact::fastTwoSum(root, (squared - stretched * stretched).hi * factor);
+  const double error = (12.0 * eta * f.excess_sum + 8.0 * curvature_error * fall) * factor +
+                       2.0 * bounds::kOperation * root;
+  refined = {change, {t.hi, t.lo}, t_error, {distance.hi, distance.lo}, error};
+  return true;
 }
 
 }  // namespace
@@ -204,48 +260,20 @@ std::optional<RoundedDistance> refinedDistance(const Segment& segment, const Box
       guess.t == 0.0 && (slope > slabs.slopeError() || segment.start == segment.end);
   const bool at_end = guess.t == 1.0 && slope < -slabs.slopeError();
   const bool inside = !at_start && !at_end;
-
-  const WideFrame<BoxType> frame(segment, at_end ? segment.end : segment.start, box);
-  if (!isInRange(frame.stretch())) {
+  kernels::Refined refined;
+  if (!refineByKernel(segment, box, slabs, guess, inside, refined) &&
+      !refine(segment, box, slabs, guess, inside, refined)) {
     return std::nullopt;
   }
-  const WideValue f =
-      inside ? valueAt(frame, guess.t, guess.excess) : valueAtOrigin(frame, guess.excess);
-  const double eta = wideError(slabs, frame.stretch());
-  double change = 0.0;
-  double curvature_error = 0.0;
-  double t_error = 0.0;
-  if (inside) {
-    const double inverse = 1.0 / f.curvature;
-    change = -f.slope.hi * inverse;
-    curvature_error = 16.0 * bounds::kUnit + 4.0 * eta * std::sqrt(inverse);
-    t_error = 4.0 * eta * (f.direction_sum + f.excess_sum) * inverse +
-              std::fabs(change) * curvature_error;
-  }
-  if (!sidesAreCertain(slabs, guess.t, guess.excess, change)) {
+  if (!sidesAreCertain(slabs, guess.t, guess.excess, refined.change)) {
     return std::nullopt;
   }
-  const std::optional<double> t = rounded(exact::twoSum(guess.t, change), t_error);
-  if (!t || (inside && !(*t > 0.0 && *t < 1.0))) {
+  const auto t = rounded(refined.t, refined.t_error);
+  const auto distance = rounded(refined.distance, refined.distance_error);
+  if (!t || (inside && !(*t > 0.0 && *t < 1.0)) || !distance) {
     return std::nullopt;
   }
-
-  const double fall = change * change * f.curvature;
-  const DoubleDouble squared = exact::fastTwoSum(f.squared.hi, f.squared.lo - fall);
-  // One step of Newton's method for sqrt(squared) / n, with the rest in double-double.
-  const DoubleDouble n = frame.stretch();
-  const double root = std::sqrt(squared.hi) / n.hi;
-  const double factor = 0.5 / (root * n.hi * n.hi);
-  const DoubleDouble stretched = n * DoubleDouble{root, 0.0};
-  const DoubleDouble distance =
-      exact::fastTwoSum(root, (squared - stretched * stretched).hi * factor);
-  const double error = (12.0 * eta * f.excess_sum + 8.0 * curvature_error * fall) * factor +
-                       2.0 * bounds::kOperation * root;
-  const std::optional<double> rounded_distance = rounded(distance, error);
-  if (!rounded_distance) {
-    return std::nullopt;
-  }
-  return RoundedDistance{*rounded_distance, *t};
+  return RoundedDistance{*distance, *t};
 }
 
 template <typename BoxType>

@@ -4,6 +4,7 @@
 
 #if defined(__x86_64__)
 #include "exact/bounds.h"
+#include "exact/distance_bounds.h"
 #include "exact/float_model.h"
 #include "kernels/float_bounds.h"
 
@@ -38,12 +39,13 @@ namespace avx2 {
 #include "kernels/generic/nearest.h"
 #include "kernels/generic/wide.h"
 #include "kernels/generic/cross.h"
+#include "kernels/generic/refine.h"
 // clang-format on
 }  // namespace avx2
 
 const Kernels kAvx2 = {
-    "avx2",    avx2::closest, avx2::any,  avx2::closestTogether, avx2::anyTogether,
-    avx2::all, avx2::nearest, avx2::cross};
+    "avx2",    avx2::closest, avx2::any,   avx2::closestTogether, avx2::anyTogether,
+    avx2::all, avx2::nearest, avx2::cross, avx2::refine};
 
 }  // namespace box_query::kernels
 

@@ -4,6 +4,7 @@
 
 #if defined(__x86_64__)
 #include "exact/bounds.h"
+#include "exact/distance_bounds.h"
 #include "exact/float_model.h"
 #include "kernels/float_bounds.h"
 
@@ -39,12 +40,13 @@ namespace avx512 {
 #include "kernels/generic/nearest.h"
 #include "kernels/generic/wide.h"
 #include "kernels/generic/cross.h"
+#include "kernels/generic/refine.h"
 // clang-format on
 }  // namespace avx512
 
 const Kernels kAvx512 = {
-    "avx512",    avx512::closest, avx512::any,  avx512::closestTogether, avx512::anyTogether,
-    avx512::all, avx512::nearest, avx512::cross};
+    "avx512",    avx512::closest, avx512::any,   avx512::closestTogether, avx512::anyTogether,
+    avx512::all, avx512::nearest, avx512::cross, avx512::refine};
 
 }  // namespace box_query::kernels
 

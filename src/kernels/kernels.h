@@ -40,6 +40,11 @@ struct Kernels {
   /// Where a component enters and leaves a box, if it is clear which faces it crosses there. Null
   /// where it is faster to work out one face after the other.
   Crossed (*cross)(const CrossingQuery&, Crossing& enter, Crossing& exit);
+
+  /// Refines where a segment is nearest to a box. Null where it is faster to work out one axis
+  /// after the other.
+  /// @return whether the box is taken
+  bool (*refine)(const RefineQuery&, Refined&);
 };
 
 extern const Kernels kPortable;

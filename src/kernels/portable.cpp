@@ -31,6 +31,7 @@ const Kernels kPortable = {"portable",
                            portable::anyTogether,
                            portable::all,
                            portable::nearest,
+                           nullptr,
                            nullptr};
 
 }  // namespace box_query::kernels

@@ -171,4 +171,28 @@ struct Crossing {
 
 enum class Crossed { kMiss, kHit, kUnclear };
 
+/// A segment that comes near an oriented box, and about where it does: see
+/// geometry/distance_filter.h.
+struct RefineQuery {
+  const double* quaternion;  ///< x, y, z, w
+  const double* center;
+  const double* half_extents;
+  const double* start;
+  const double* end;
+  double t;             ///< near where it is nearest
+  const double* sides;  ///< the excess there, at least its signs
+  double scale;         ///< of the SegmentSlabs
+  bool inside;          ///< whether it may be nearest between its ends; or else t is one of them
+};
+
+/// Where a segment is nearest to a box and how near, each x[0] + x[1] within an error, if the
+/// excess keeps its sides on the way from the guess.
+struct Refined {
+  double change;  ///< how far it is from the guess
+  double t[2];
+  double t_error;
+  double distance[2];
+  double distance_error;
+};
+
 }  // namespace box_query::kernels

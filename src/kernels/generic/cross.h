@@ -14,25 +14,11 @@ static Crossed cross(const CrossingQuery& query, Crossing& enter, Crossing& exit
   const Double4 direction = lanes4(query.direction);
   const Double4 half_extents = lanes4(query.half_extents);
 
-  // The frame stretched by n = |q|^2: lane i has axis i, its own coordinate i first.
-  const Double4 imaginary = lanes4(query.quaternion);
-  const Double4 real = all4(query.quaternion[3]);
-  const Wide4 squares = twoProduct(imaginary, imaginary);
-  const Wide4 along = twoProduct(real, real) + squares;
-  const Wide4 across = turned(squares) + turnedTwice(squares);
-  const Wide4 n = along + across;
-  const Double4 doubled = imaginary + imaginary;
-  const Wide4 mixed = twoProduct(doubled, turned(imaginary));
-  const Wide4 turning = twoProduct(doubled, real);
-  const Wide4 axis0 = along - across;
-  const Wide4 axis1 = mixed + turnedTwice(turning);
-  const Wide4 axis2 = turnedTwice(mixed) - turned(turning);
+  const WideFrame frame = wideFrame(query.quaternion);
+  const Wide4& n = frame.n;
   const Wide4 offset = twoSum(origin, negated(center));
-  const Wide4 wide_direction = {direction, lanes4(query.direction_low)};
-  const Wide4 position =
-      sumOfProducts(axis0, offset, axis1, turned(offset), axis2, turnedTwice(offset));
-  const Wide4 den = normalized(sumOfProducts(axis0, wide_direction, axis1, turned(wide_direction),
-                                             axis2, turnedTwice(wide_direction)));
+  const Wide4 position = frame.along(offset);
+  const Wide4 den = normalized(frame.along({direction, lanes4(query.direction_low)}));
   const Wide4 extent = n * half_extents;
 
   // num and den are off by less than bounds::kRow n times what they are made of.

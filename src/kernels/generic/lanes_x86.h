@@ -93,6 +93,13 @@ static inline Double4 sumOf3(Double4 a) {
 static inline Double4 larger(Double4 a, Double4 b) {
   return {_mm256_max_pd(a.v, b.v)};
 }
+static inline Double4 squareRoot(Double4 a) {
+  return {_mm256_sqrt_pd(a.v)};
+}
+/// a where b is not 0.
+static inline Double4 orZeroWhereZero(Double4 a, Double4 b) {
+  return {_mm256_and_pd(_mm256_cmp_pd(b.v, _mm256_setzero_pd(), _CMP_NEQ_OQ), a.v)};
+}
 static inline double firstLane(Double4 a) {
   return _mm256_cvtsd_f64(a.v);
 }

@@ -68,3 +68,29 @@ static inline Wide4 quotient(const Wide4& a, const Wide4& b, Double4 q, Double4 
   const Double4 rest = ((a.hi - product.hi) - product.lo) + fusedNegative(q, b.lo, a.lo);
   return fastTwoSum(q, rest * inverse);
 }
+
+/// The frame of a box stretched by n = |q|^2: lane i has axis i, its own coordinate i first.
+struct WideFrame {
+  Wide4 n;
+  Wide4 axis0;
+  Wide4 axis1;
+  Wide4 axis2;
+
+  Wide4 along(const Wide4& v) const {
+    return sumOfProducts(axis0, v, axis1, turned(v), axis2, turnedTwice(v));
+  }
+};
+
+/// @param quaternion x, y, z, w
+static inline WideFrame wideFrame(const double* quaternion) {
+  const Double4 imaginary = lanes4(quaternion);
+  const Double4 real = all4(quaternion[3]);
+  const Wide4 squares = twoProduct(imaginary, imaginary);
+  const Wide4 along = twoProduct(real, real) + squares;
+  const Wide4 across = turned(squares) + turnedTwice(squares);
+  const Double4 doubled = imaginary + imaginary;
+  const Wide4 mixed = twoProduct(doubled, turned(imaginary));
+  const Wide4 turning = twoProduct(doubled, real);
+  return {along + across, along - across, mixed + turnedTwice(turning),
+          turnedTwice(mixed) - turned(turning)};
+}
