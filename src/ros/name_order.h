@@ -53,6 +53,24 @@ inline IndexRange rangeOf(const std::vector<BoxName>& names, const NamePrefix& p
           static_cast<std::size_t>(range.second - names.begin())};
 }
 
+/// Of each name its place among those of another snapshot, or kNoBox: see Scene::updated().
+inline std::vector<std::size_t> placesOf(const std::vector<BoxName>& names,
+                                         const std::vector<BoxName>& others) {
+  std::vector<std::size_t> places(names.size(), kNoBox);
+  std::size_t other = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const NamePrefix whole{names[i].topic, &names[i].ns, &names[i].id};
+    int order = -1;
+    while (other < others.size() && (order = ByPrefix::compare(others[other], whole)) < 0) {
+      ++other;
+    }
+    if (other < others.size() && order == 0) {
+      places[i] = other++;
+    }
+  }
+  return places;
+}
+
 /// The topics of the boxes, each once.
 inline std::vector<std::string> topicsOf(const std::vector<BoxName>& names) {
   std::vector<std::string> topics;

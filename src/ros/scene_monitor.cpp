@@ -2,11 +2,12 @@
 // The walk: box message -> source -> store -> placement (BoxTracker) -> new Scene -> one pointer
 // swapped. Here are the threads: one hears boxes, one hears tf, and a worker places what waited and
 // builds ahead. Whoever asks builds too, if the worker has not yet.
-#include "ros/any_box_message.h"
 #include "ros/bell.h"
 #include "ros/box_tracker.h"
 #include "ros/kept_scenes.h"
 #include "ros/latest.h"
+#include "ros/name_order.h"
+#include "ros/name_order.h"
 #include "ros/publishers.h"
 #include "ros/transforms.h"
 
@@ -104,10 +105,11 @@ struct SceneMonitor::Impl {
   Transforms transforms;
   std::vector<Topic> topics;  ///< of the constructor, then of the worker
 
-  std::mutex mutex;  ///< guards the next four
+  std::mutex mutex;  ///< guards the next five
   BoxTracker tracker;
   ros::Time now;  ///< when last looked at
   std::uint64_t builds = 0;
+  std::uint64_t refits = 0;
   std::uint64_t unbuilt_changes = 0;
 
   std::mutex build_mutex;           ///< one at a time; locked before `mutex`
@@ -262,7 +264,10 @@ void SceneMonitor::Impl::build() {
   const BuiltPtr before = latest.read([](const BuiltPtr& built) { return built; });
   draft.snapshot.id = before->snapshot.id + 1;
   const bool same = boxes == shown_boxes;
-  draft.snapshot.scene = same ? before->snapshot.scene : Scene(std::move(draft.boxes));
+  const Snapshot& old = before->snapshot;
+  draft.snapshot.scene =
+      same ? old.scene
+           : old.scene.updated(std::move(draft.boxes), placesOf(draft.snapshot.names, old.names));
   const auto after = std::make_shared<Built>(std::move(draft.snapshot));
   latest.write(after);
   if (before->handed_out) {  // nobody can get it any more
@@ -272,6 +277,7 @@ void SceneMonitor::Impl::build() {
   lock.lock();
   if (!same) {
     ++builds;
+    refits += after->snapshot.scene.update().rebuilt ? 0 : 1;
     --unbuilt_changes;
   }
   shown_changes = changes;
@@ -374,6 +380,7 @@ MonitorStatistics SceneMonitor::statistics() const {
   const std::lock_guard<std::mutex> lock(impl_->mutex);
   MonitorStatistics counts = impl_->tracker.counts();
   counts.builds = impl_->builds;
+  counts.refits = impl_->refits;
   counts.avoided_builds = impl_->unbuilt_changes;
   return counts;
 }

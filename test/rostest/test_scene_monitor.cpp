@@ -165,6 +165,29 @@ TEST_F(MonitorOfOneTopic, SharesTheSceneOfBoxesThatAreSentAgain) {
   EXPECT_EQ(monitor_->currentScene(), after) << "nothing has happened";
 }
 
+TEST_F(MonitorOfOneTopic, RefitsWhereSomeOfManyBoxesMove) {
+  start();
+  std::vector<Marker> boxes;
+  for (int id = 0; id < 200; ++id) {
+    boxes.push_back(cube("map", id, 2.0 * id));
+  }
+  say(boxes);
+  ASSERT_TRUE(hasBoxes(*monitor_, 200));
+  EXPECT_EQ(monitor_->statistics().refits, 0U);
+  say({withAction(cube("map", 3, 0.0), Marker::DELETE), cube("map", 7, 14.5),
+       cube("map", 300, 9.0)});
+  ASSERT_TRUE(eventually([&] { return monitor_->statistics().messages == 2; }));
+  const SnapshotPtr after = monitor_->currentScene();
+  EXPECT_EQ(after->scene.update().moved, 1U);
+  EXPECT_EQ(after->scene.update().added, 1U);
+  EXPECT_EQ(after->scene.update().removed, 1U);
+  EXPECT_EQ(monitor_->statistics().refits, 1U);
+  const Hit hit = after->scene.cast({{14.5, -5.0, 0.0}, {0.0, 1.0, 0.0}});
+  ASSERT_TRUE(hit.hit);
+  EXPECT_EQ(after->names[hit.box].id, 7);
+  EXPECT_EQ(hit.range, 4.5);
+}
+
 TEST_F(MonitorOfOneTopic, KeepsOnlyTheLastSnapshots) {
   parameters_.kept_scenes = 2;
   start();

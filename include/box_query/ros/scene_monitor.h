@@ -87,6 +87,7 @@ struct MonitorStatistics {
   std::uint64_t given_up_boxes = 0;                 ///< their transform never came
   std::uint64_t overflowed_boxes = 0;               ///< more waiting than allowed
   std::uint64_t builds = 0;                         ///< scenes built
+  std::uint64_t refits = 0;                         ///< of these, with the nodes of the one before
   std::uint64_t avoided_builds = 0;                 ///< changes that no scene was built for
   std::uint64_t avoided_transforms = 0;             ///< boxes whose frame is the fixed frame
 };
