@@ -2,6 +2,7 @@
 // The walk: box message -> source -> store -> placement (BoxTracker) -> new Scene -> one pointer
 // swapped. Here are the threads: one hears boxes, one hears tf, and a worker places what waited and
 // builds ahead. Whoever asks builds too, if the worker has not yet.
+#include "ros/any_box_message.h"
 #include "ros/bell.h"
 #include "ros/box_tracker.h"
 #include "ros/kept_scenes.h"
