@@ -62,6 +62,7 @@ void BoxTracker::receive(std::size_t topic_index, const BoxSource* source, Decod
   }
   topic.refusal.clear();
   topic.state.heard = true;
+  ++topic.state.messages;
   topic.state.last_message = now;
   if (message.changes.empty()) {
     noteStamp(message.stamp, now);

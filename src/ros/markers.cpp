@@ -61,7 +61,7 @@ void Markers::run() {
 }
 
 void Markers::welcome(const ros::SingleSubscriberPublisher& subscriber) {
-  const SnapshotPtr scene = monitor_.currentScene();
+  const SnapshotPtr scene = monitor_.watchedScene();
   visualization_msgs::MarkerArray array;
   array.markers = boxMarkers(*scene);
   if (!array.markers.empty()) {
@@ -74,7 +74,7 @@ void Markers::welcome(const ros::SingleSubscriberPublisher& subscriber) {
 
 void Markers::publish() {
   visualization_msgs::MarkerArray array;
-  const SnapshotPtr scene = monitor_.currentScene();
+  const SnapshotPtr scene = monitor_.watchedScene();
   // Snapshots of the same boxes share them.
   if (!shown_ || &scene->scene.boxes() != &shown_->scene.boxes()) {
     array.markers = boxMarkers(*scene);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "ros/diagnostics.h"
 #include "ros/server.h"
 
 #include <box_query/ros/scene_monitor.h>
@@ -9,9 +10,9 @@
 
 namespace box_query {
 
-/// The node, whether a process or a nodelet: a SceneMonitor with services in front and markers
-/// behind, on threads of their own. Its end waits for the answers that are being worked on, but not
-/// for the rest of a batch.
+/// The node, whether a process or a nodelet: a SceneMonitor with services in front, markers and
+/// diagnostics behind, on threads of their own. Its end waits for the answers that are being worked
+/// on, but not for the rest of a batch.
 class Node {
  public:
   /// Topics are resolved in the namespace of `nh`; parameters, services and markers are those of
@@ -22,6 +23,7 @@ class Node {
  private:
   SceneMonitor monitor_;
   Server server_;
+  Diagnostics diagnostics_;
 };
 
 }  // namespace box_query

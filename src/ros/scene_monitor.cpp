@@ -357,6 +357,11 @@ SnapshotPtr SceneMonitor::currentScene() {
   return impl_->handOut();
 }
 
+SnapshotPtr SceneMonitor::watchedScene() {
+  impl_->makeNewest();
+  return impl_->latest.read(snapshotOf);
+}
+
 SnapshotPtr SceneMonitor::sceneById(std::uint64_t id) const {
   const SnapshotPtr latest = impl_->latest.read(snapshotOf);
   return latest->id == id ? latest : impl_->kept.find(id);

@@ -37,7 +37,7 @@ Server::Server(ros::NodeHandle& private_nh, SceneMonitor& monitor)
   spinner_.start();
 
   std::string topics;
-  for (const TopicState& topic : monitor.scene()->topics) {
+  for (const TopicState& topic : monitor.watchedScene()->topics) {
     topics += (topics.empty() ? "" : ", ") + topic.parameters.topic;
   }
   std::string services;
@@ -110,7 +110,9 @@ void Server::handle(const CheckedRequest<Request>& checked, Response& response) 
     }
     answerNow(checked.request, response);
     response.success = true;
+    ++answered_;
   } catch (const std::exception& error) {
+    ++refused_;
     response = nothing<Response>();
     describeScene(*monitor_.scene(), ros::Time::now(), response);
     response.message = error.what();

@@ -24,6 +24,12 @@
 
 namespace box_query {
 
+/// Requests since start.
+struct RequestCounts {
+  std::uint64_t answered = 0;
+  std::uint64_t refused = 0;
+};
+
 /// Answers on Parameters::service_threads threads of its own, until it is destroyed.
 class Server {
  public:
@@ -32,6 +38,8 @@ class Server {
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
+
+  RequestCounts counts() const { return {answered_, refused_}; }
 
  private:
   template <class Service>
@@ -51,6 +59,8 @@ class Server {
 
   SceneMonitor& monitor_;
   Markers markers_;
+  std::atomic<std::uint64_t> answered_{0};
+  std::atomic<std::uint64_t> refused_{0};
   std::atomic<bool> stopping_{false};
   std::shared_ptr<ros::CallbackQueue> queue_ = std::make_shared<ros::CallbackQueue>();
   std::vector<ros::ServiceServer> services_;

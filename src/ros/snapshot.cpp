@@ -13,34 +13,31 @@ double secondsBetween(const ros::Time& from, const ros::Time& to) {
                                     static_cast<std::int64_t>(from.toNSec()));
 }
 
-/// What keeps the topic from being known, as sentences; empty if nothing does.
-std::string missingOf(const TopicState& topic, const ros::Time& now) {
-  std::ostringstream text;
-  const std::string& name = topic.parameters.topic;
-  const char* separator = "";
-  if (!topic.problem.empty()) {
-    text << topic.problem;
-    separator = " ";
-  } else if (!topic.heard && topic.parameters.required) {
-    text << "No boxes have come on topic " << name
-         << ": start what publishes them, or correct ~box_topics.";
-    separator = " ";
-  }
-  if (topic.isStale(now)) {
-    text << separator << "Topic " << name << " is stale: its last message came "
-         << secondsBetween(topic.last_message, now) << " s ago, and its timeout is "
-         << topic.parameters.timeout << " s"
-         << (topic.parameters.drop_stale ? ", after which its boxes are dropped" : "")
-         << ": check what publishes it.";
-  }
-  return text.str();
-}
-
 }  // namespace
 
 bool TopicState::isStale(const ros::Time& now) const {
   return heard && parameters.timeout > 0.0 &&
          secondsBetween(last_message, now) > parameters.timeout;
+}
+
+std::string TopicState::missing(const ros::Time& now) const {
+  std::ostringstream text;
+  const char* separator = "";
+  if (!problem.empty()) {
+    text << problem;
+    separator = " ";
+  } else if (!heard && parameters.required) {
+    text << "No boxes have come on topic " << parameters.topic
+         << ": start what publishes them, or correct ~box_topics.";
+    separator = " ";
+  }
+  if (isStale(now)) {
+    text << separator << "Topic " << parameters.topic << " is stale: its last message came "
+         << secondsBetween(last_message, now) << " s ago, and its timeout is " << parameters.timeout
+         << " s" << (parameters.drop_stale ? ", after which its boxes are dropped" : "")
+         << ": check what publishes it.";
+  }
+  return text.str();
 }
 
 Completeness Snapshot::completeness(const ros::Time& now) const {
@@ -49,7 +46,7 @@ Completeness Snapshot::completeness(const ros::Time& now) const {
     result.reason = "The ROS clock has not started: publish /clock, or unset /use_sim_time.";
   }
   for (const TopicState& topic : topics) {
-    const std::string missing = missingOf(topic, now);
+    const std::string missing = topic.missing(now);
     if (!missing.empty()) {
       result.reason += (result.reason.empty() ? "" : " ") + missing;
     }

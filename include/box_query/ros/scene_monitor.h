@@ -35,14 +35,18 @@ struct BoxName {
 struct TopicState {
   TopicParameters parameters;  ///< its topic is the resolved name
   bool heard = false;
-  ros::Time last_message;    ///< ROS time at which the last one was received
-  std::size_t rejected = 0;  ///< boxes of its last word that were rejected or never placed
-  std::size_t waiting = 0;   ///< boxes that wait for their transform
+  std::uint64_t messages = 0;  ///< that were understood, since start
+  ros::Time last_message;      ///< ROS time at which the last one was received
+  std::size_t rejected = 0;    ///< boxes of its last word that were rejected or never placed
+  std::size_t waiting = 0;     ///< boxes that wait for their transform
   std::string
       problem;  ///< first of the rejections or missing transforms, as a sentence; unknown type
 
   /// Whether it was heard, and its last message came longer before `now` than its timeout.
   bool isStale(const ros::Time& now) const;
+  /// What keeps the topic from being known at ROS time `now`, as sentences that say what to do;
+  /// empty if nothing does.
+  std::string missing(const ros::Time& now) const;
 };
 
 /// Whether answers from a snapshot may be trusted as a whole.
@@ -122,6 +126,10 @@ class SceneMonitor {
   /// The snapshot of all that has been received until now (lifetimes included), built first if need
   /// be.
   SnapshotPtr currentScene();
+
+  /// The same as currentScene() for who only watches: no reason to build ahead, and not to be asked
+  /// for by its id.
+  SnapshotPtr watchedScene();
 
   /// One of the last snapshots that currentScene() or scene() handed out, as many as
   /// Parameters::kept_scenes and max_kept_boxes allow, or null.
