@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the tests that CMake has listed, one after another, and counts their cases from the result files.
+"""Runs the tests that CMake has listed, a few at a time, and counts their cases from the result files.
 
 Called by test/run, in the environment of the built package.
 """
@@ -16,6 +16,8 @@ import tempfile
 import time
 import xml.etree.ElementTree as ElementTree
 from collections import namedtuple
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 
 PASSED, FAILED, SKIPPED = 'passed', 'failed', 'skipped'
 SKIP_CODE = 77  # what a script returns if it cannot be run here; its last line says why
@@ -86,6 +88,11 @@ def command_of(test, folder):
     return test.command
 
 
+def become_subreaper():
+    """Lets this process inherit what a test leaves behind."""
+    ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)  # PR_SET_CHILD_SUBREAPER
+
+
 def children():
     """Process ids of the living children of this process."""
     found = []
@@ -101,7 +108,7 @@ def children():
 
 
 def kill_children():
-    """Ends everything that a test has left behind: as a subreaper this process inherits it."""
+    """Ends everything that a test has left behind, in a subreaper."""
     while True:
         left = children()
         if not left:
@@ -147,11 +154,12 @@ def reports(folder):
 
 
 def run(test, folder, environment, verbose):
-    """The cases of one test. At least one: a test that ran none has failed."""
+    """The cases of one test. At least one: a test that ran none has failed. In a subreaper that runs no other."""
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
     log = os.path.join(folder, 'sanitizer')
-    environment = dict(environment, ASAN_OPTIONS='log_path=' + log, UBSAN_OPTIONS='print_stacktrace=1:log_path=' + log)
+    environment = dict(environment, ROS_HOME=os.path.join(folder, 'ros_home'),
+                       ASAN_OPTIONS='log_path=' + log, UBSAN_OPTIONS='print_stacktrace=1:log_path=' + log)
     start = time.monotonic()
     code, output = execute(test, folder, environment, verbose)
     seconds = time.monotonic() - start
@@ -181,6 +189,13 @@ def run(test, folder, environment, verbose):
     return cases
 
 
+def run_all(tests, folder, environment, verbose, jobs):
+    """Pairs of test and cases in the order of the tests, of which `jobs` run at once, each in its folder."""
+    with ProcessPoolExecutor(jobs, initializer=become_subreaper) as pool:
+        yield from zip(tests, pool.map(partial(run, environment=environment, verbose=verbose), tests,
+                                       [os.path.join(folder, test.name) for test in tests]))
+
+
 def without_unexpected_skips(cases, allowed):
     """The same cases, failed where one was skipped with a name and text that do not match `allowed`."""
     return [case._replace(outcome=FAILED, text='must not be skipped here: ' + case.text)
@@ -199,6 +214,7 @@ def main():
     parser = argparse.ArgumentParser(prog='test/run')
     parser.add_argument('--build-dir', required=True)
     parser.add_argument('--verbose', action='store_true', help='print also what the tests print')
+    parser.add_argument('--jobs', type=int, default=os.cpu_count(), metavar='N', help='tests that run at once')
     parser.add_argument('--allow-skips', default='', metavar='REGEX',
                         help='a skip counts as failed unless this matches its name and reason')
     parser.add_argument('--without-scripts', action='store_true', help='only programs that were built here')
@@ -216,7 +232,6 @@ def main():
         print('\n'.join(targets_of(tests)))
         return 0
 
-    ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)  # PR_SET_CHILD_SUBREAPER
     environment = {key: value for key, value in os.environ.items()
                    if key not in ('ROS_HOSTNAME', 'ROS_NAMESPACE', 'ROS_LOG_DIR', 'ROS_MASTER_URI')}
     # rostest starts a master of its own, on a free port.
@@ -226,10 +241,8 @@ def main():
         # rostest splits the path of its results at a space, which the build directory's may have.
         build_dir = os.path.join(temporary, 'build')
         os.symlink(os.path.abspath(arguments.build_dir), build_dir)
-        environment['ROS_HOME'] = os.path.join(build_dir, 'ros_home')
-        for test in tests:
-            folder = os.path.join(build_dir, 'test_results', test.name)
-            results = run(test, folder, environment, arguments.verbose)
+        results_dir = os.path.join(build_dir, 'test_results')
+        for test, results in run_all(tests, results_dir, environment, arguments.verbose, arguments.jobs):
             for case in without_unexpected_skips(results, arguments.allow_skips):
                 label = case.name if test.name in case.name else test.name + ' ' + case.name
                 print('%-7s %8.2f s  %s' % (case.outcome, case.seconds, label))

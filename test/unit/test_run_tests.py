@@ -113,13 +113,25 @@ class RunTests(unittest.TestCase):
         code = ('import subprocess, signal, time; signal.signal(signal.SIGINT, signal.SIG_IGN);'
                 'child = subprocess.Popen(["sleep", "1000"], start_new_session=True);'
                 'print(child.pid, flush=True); child.wait()')
-        run_tests.ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)
+        run_tests.become_subreaper()
         run_tests.GRACE = 0.5
         cases = self.run_command('gtest', code, limit=2.0)
         self.assertEqual([case.outcome for case in cases], [FAILED])
         self.assertIn('time limit', cases[0].text)
         pid = cases[0].text.splitlines()[-1]
         self.assertFalse(os.path.exists('/proc/' + pid), pid)
+
+    def test_as_many_tests_run_at_once_as_there_are_jobs(self):
+        wait_for_the_other = ('import os, sys, time\n'
+                              'open(sys.argv[1], "w").close()\n'
+                              'while not os.path.exists(sys.argv[2]):\n'
+                              '    time.sleep(0.01)')
+        tests = [Test(own, 'script', 20.0, [], [sys.executable, '-c', wait_for_the_other] +
+                      [os.path.join(self.folder.name, name) for name in (own, other)])
+                 for own, other in (('first', 'second'), ('second', 'first'))]
+        results = list(run_tests.run_all(tests, self.folder.name + '/results', dict(os.environ), False, 2))
+        self.assertEqual([(test.name, case.outcome) for test, cases in results for case in cases],
+                         [('first', PASSED), ('second', PASSED)])
 
     def test_a_script_is_one_case(self):
         self.assertEqual([case.outcome for case in self.run_command('script', 'pass')], [PASSED])
@@ -157,6 +169,7 @@ class RunTests(unittest.TestCase):
         self.assertEqual(self.refusal('--bogus'), 'test/run knows no option --bogus; see test/run --help\n')
         self.assertIn('--bogus', self.refusal('--yes', 'sanitize', '--verbose', '--bogus'))
         self.assertIn('regular expression', self.refusal('--allow-skips'))
+        self.assertIn('a number', self.refusal('--jobs', 'many'))
         self.assertIn('no benchmark bogus', self.refusal('benchmark', 'bogus'))
 
 
