@@ -3,6 +3,7 @@
 /// Many queries against one scene, on all cores: the answers of the single calls, in their order.
 #pragma once
 
+#include <box_query/counters.h>
 #include <box_query/geometry.h>
 #include <box_query/scene.h>
 
@@ -23,6 +24,8 @@ struct BatchOptions {
   /// Threads that work at once, the caller's among them; 0: as many as there are cores. A small
   /// batch stays on the caller's.
   int max_threads = 0;
+  /// What the queries did on all threads is added to it, unless it is null.
+  QueryCounters* counters = nullptr;
 };
 
 /// Calls work(begin, end) for parts that make up [0, count), each index once, on up to

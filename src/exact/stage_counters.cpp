@@ -4,6 +4,7 @@
 namespace box_query::exact {
 
 StageCounters& stageCounters() {
+  // Touched by slow stages only: no model of its own.
   thread_local StageCounters counters;
   return counters;
 }

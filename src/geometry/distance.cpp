@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "exact/rounding.h"
+#include "exact/stage_counters.h"
 #include "geometry/aligned_form.h"
 #include "geometry/distance_exact.h"
 #include "geometry/distance_points.h"
@@ -33,6 +34,7 @@ RoundedDistance nearestOf(const Segment& segment, const BoxType& box, const Near
     return {exact::roundedSqrt(flat->squared, 1.0),
             findIntersection(segment, flat->shadow).t_enter};
   }
+  ++exact::stageCounters().exact_roundings;
   const exact::Nearest nearest = exact::nearest(exact::segmentAtBox(segment, box));
   return {exact::roundedSqrt(nearest.squared.num, nearest.squared.den),
           exact::roundedQuotient(nearest.t.num, nearest.t.den)};
@@ -67,6 +69,7 @@ exact::Ratio exactSquaredDistance(const Segment& segment, const BoxType& box) {
   if (auto flat = flatDistance(segment, box)) {
     return {std::move(flat->squared), 1.0};
   }
+  ++exact::stageCounters().exact_decisions;
   return exact::nearest(exact::segmentAtBox(segment, box)).squared;
 }
 
@@ -100,6 +103,7 @@ double roundedFirstWithin(const Segment& segment, const BoxType& box,
       return *refined;
     }
   }
+  ++exact::stageCounters().exact_roundings;
   return exact::roundedDown(*exact::firstWithin(exact::segmentAtBox(segment, box), radius));
 }
 

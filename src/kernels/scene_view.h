@@ -103,8 +103,9 @@ struct Candidate {
 
 /// What was not skipped.
 struct Work {
-  std::uint64_t nodes = 0;  ///< whose slots were compared, or blocks
-  std::uint64_t boxes = 0;  ///< compared in double
+  std::uint64_t nodes = 0;         ///< whose slots were compared, or blocks
+  std::uint64_t boxes = 0;         ///< compared in double
+  std::uint64_t turned_boxes = 0;  ///< of these, not aligned
 };
 
 /// What a query found out. More candidates than it holds go to the caller in portions.

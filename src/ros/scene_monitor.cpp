@@ -8,7 +8,6 @@
 #include "ros/kept_scenes.h"
 #include "ros/latest.h"
 #include "ros/name_order.h"
-#include "ros/name_order.h"
 #include "ros/publishers.h"
 #include "ros/transforms.h"
 

@@ -47,11 +47,25 @@ std::size_t threadsFor(int max_threads) {
   return static_cast<std::size_t>(std::max(max_threads > 0 ? max_threads : cores, 1));
 }
 
+/// forEachPart() with the counters that the options ask for.
+template <typename Work>
+void forEachCountedPart(std::size_t count, const BatchOptions& options, Work&& work) {
+  std::mutex mutex;
+  forEachPart(count, options.max_threads, [&](std::size_t begin, std::size_t end) {
+    const QueryCounters before = queryCounters();
+    work(begin, end);
+    if (options.counters != nullptr) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      *options.counters += queryCounters() - before;
+    }
+  });
+}
+
 template <typename Answer, typename Query, typename Ask>
 std::vector<Answer> askEach(const std::vector<Query>& queries, const BatchOptions& options,
                             Ask&& ask) {
   std::vector<Answer> answers(queries.size());
-  forEachPart(queries.size(), options.max_threads, [&](std::size_t begin, std::size_t end) {
+  forEachCountedPart(queries.size(), options, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       answers[i] = ask(queries[i]);
     }
@@ -93,7 +107,7 @@ void forEachPart(std::size_t count, int max_threads,
 std::vector<Hit> castEach(const Scene& scene, const std::vector<Ray>& rays,
                           const BatchOptions& options) {
   std::vector<Hit> hits(rays.size());
-  forEachPart(rays.size(), options.max_threads, [&](std::size_t begin, std::size_t end) {
+  forEachCountedPart(rays.size(), options, [&](std::size_t begin, std::size_t end) {
     scene.cast(&rays[begin], end - begin, &hits[begin], options.max_range, options.mask);
   });
   return hits;
@@ -102,7 +116,7 @@ std::vector<Hit> castEach(const Scene& scene, const std::vector<Ray>& rays,
 std::vector<ClosestBox> castClosestEach(const Scene& scene, const std::vector<Ray>& rays,
                                         const BatchOptions& options) {
   std::vector<ClosestBox> closest(rays.size());
-  forEachPart(rays.size(), options.max_threads, [&](std::size_t begin, std::size_t end) {
+  forEachCountedPart(rays.size(), options, [&](std::size_t begin, std::size_t end) {
     scene.castClosest(&rays[begin], end - begin, &closest[begin], options.max_range, options.mask);
   });
   return closest;
@@ -111,7 +125,7 @@ std::vector<ClosestBox> castClosestEach(const Scene& scene, const std::vector<Ra
 std::vector<std::uint8_t> castAnyEach(const Scene& scene, const std::vector<Ray>& rays,
                                       const BatchOptions& options) {
   std::vector<std::uint8_t> any(rays.size());
-  forEachPart(rays.size(), options.max_threads, [&](std::size_t begin, std::size_t end) {
+  forEachCountedPart(rays.size(), options, [&](std::size_t begin, std::size_t end) {
     scene.castAny(&rays[begin], end - begin, &any[begin], options.max_range, options.mask);
   });
   return any;

@@ -134,6 +134,7 @@ ClosestBox Scene::castClosest(const Ray& ray, double max_range,
   };
   const bool taken = impl_->kernels.closest(impl_->view, rayQuery(ray, max_range, mask, direction),
                                             found, give_up, &too_many);
+  countWork(found.work);
   return impl_->closestOf(ray, max_range, mask, taken && !too_many ? &found : nullptr);
 }
 

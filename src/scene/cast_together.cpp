@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/candidates.h"
+#include "scene/counters.h"
 #include "scene/scene_impl.h"
 
 #include <box_query/scene.h>
@@ -23,6 +24,9 @@ void castTogether(kernels::Together together, const kernels::SceneView& view, co
   const auto deliver = [](void* context, std::size_t query, kernels::Answer answer,
                           const kernels::Found* found) {
     const auto& c = *static_cast<Context*>(context);
+    if (found != nullptr) {
+      countWork(found->work);
+    }
     c.take(c.first + query, answer, found);
   };
   for (std::size_t first = 0; first < count; first += kQueries) {

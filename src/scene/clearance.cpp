@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "exact/stage_counters.h"
 #include "geometry/distance_exact.h"
 #include "geometry/distance_query.h"
 #include "geometry/prepared_box.h"
@@ -84,6 +85,7 @@ struct Blocking {
 const exact::Root& firstRoot(const Segment& segment, const Box& box, double radius,
                              Blocking& blocking) {
   if (!blocking.root) {
+    ++exact::stageCounters().exact_decisions;
     blocking.root = exact::firstWithin(exact::segmentAtBox(segment, box), radius);
   }
   return *blocking.root;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "geometry/solve.h"
 #include "scene/candidates.h"
+#include "scene/counters.h"
 #include "scene/scene_impl.h"
 
 #include <box_query/scene.h>
@@ -45,6 +46,7 @@ std::vector<BoxIntersection> Scene::Impl::findAll(const T& linear, const BoxMask
     const bool taken =
         kernels.all(view, rayQuery(ray, kInf, mask, direction), found, addTo, &maybe);
     addTo(&maybe, found);
+    countWork(found.work);
     return taken;
   };
   bool taken = false;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "scene/candidates.h"
+#include "scene/counters.h"
 #include "scene/first_entered.h"
 #include "scene/scene_impl.h"
 
@@ -45,6 +46,7 @@ void Scene::Impl::findFirst(FirstEntered<T>& first, double max_range, const BoxM
   Vector3 direction;
   const bool taken = kernels.closest(view, rayQuery(first.linear(), max_range, mask, direction),
                                      found, FirstEntered<T>::take, &first);
+  countWork(found.work);
   first.offer(found);
   offerOthers(first, taken, max_range, mask);
 }
@@ -69,6 +71,7 @@ bool Scene::Impl::meetsAny(const T& linear, double max_range, const BoxMask* mas
   Vector3 direction;
   const kernels::Answer answer = kernels.any(view, rayQuery(linear, max_range, mask, direction),
                                              found, Undecided::take, &undecided);
+  countWork(found.work);
   if (answer == kernels::Answer::kYes || undecided.met ||
       Undecided::take(&undecided, found) < 0.0) {
     return true;
@@ -125,6 +128,7 @@ void Scene::Impl::forEachNear(const Segment& segment, double bound, bool shrinks
     };
     kernels::Work work;
     kernels.nearest(view, query, approach, &context, work);
+    countWork(work);
   }
   if (!ended) {
     forEachOther(tree, for_kernels, boxes.size(), mask,

@@ -169,6 +169,7 @@ class NearestSearch {
       return true;
     }
     ++work_.boxes;
+    work_.turned_boxes += view_.records[record].isAligned() ? 0 : 1;
     const double bound = approach_(context_, box);
     if (bound < 0.0) {
       return false;

@@ -10,6 +10,7 @@ static inline bool mayEnter(const SceneView& view, const RayQuery& query, const 
     return false;
   }
   ++work.boxes;
+  work.turned_boxes += view.records[record].isAligned() ? 0 : 1;
   const Times t = timesOf(view.records[record], ray);
   candidate = {box, t.enter_hi <= t.exit_lo, t.enter_lo, t.enter_hi, t.exit_hi};
   return t.enter_lo <= t.exit_hi && t.enter_lo <= bound;

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a scene does not need is not done.
+#include "reference/sampler.h"
+
+#include <box_query/batch.h>
+#include <box_query/counters.h>
+#include <box_query/scene.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace box_query {
+namespace {
+
+using reference::Sampler;
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr std::size_t kRays = 1000;
+
+template <typename Ask>
+QueryCounters workOf(Ask&& ask) {
+  const QueryCounters before = queryCounters();
+  ask();
+  return queryCounters() - before;
+}
+
+double sideOf(std::size_t count) {
+  return 3.0 * std::cbrt(static_cast<double>(count));
+}
+
+std::vector<Box> turnedBoxes(std::size_t count) {
+  Sampler sampler(1);
+  const double side = sideOf(count);
+  std::vector<Box> boxes;
+  while (boxes.size() < count) {
+    boxes.emplace_back(
+        OrientedBox{sampler.vector(-side, side), sampler.rotation(), sampler.vector(0.1, 1.5)});
+  }
+  return boxes;
+}
+
+std::vector<Ray> raysAmong(std::size_t boxes) {
+  Sampler sampler(2);
+  std::vector<Ray> rays;
+  while (rays.size() < kRays) {
+    rays.push_back({sampler.vector(-sideOf(boxes), sideOf(boxes)), sampler.direction()});
+  }
+  return rays;
+}
+
+QueryCounters castAll(const Scene& scene, double max_range = kInf) {
+  return workOf([&] {
+    for (const Ray& ray : raysAmong(scene.size())) {
+      scene.castClosest(ray, max_range);
+    }
+  });
+}
+
+TEST(SkippedWork, AHandfulOfBoxesHasNoIndex) {
+  // Eight boxes at a time, and nothing else.
+  EXPECT_EQ(castAll(Scene(turnedBoxes(5))).nodes, kRays);
+  EXPECT_EQ(castAll(Scene(turnedBoxes(16))).nodes, 2 * kRays);
+}
+
+TEST(SkippedWork, AlignedBoxesAreNotRotatedFor) {
+  std::vector<Box> boxes = turnedBoxes(500);
+  EXPECT_GT(castAll(Scene(boxes)).turned_boxes, kRays / 5);
+  for (Box& box : boxes) {
+    const auto& turned = *std::get_if<OrientedBox>(&box);
+    box = AlignedBox{turned.center - turned.half_extents, turned.center + turned.half_extents};
+  }
+  const QueryCounters work = castAll(Scene(boxes));
+  EXPECT_GT(work.boxes, kRays / 5);
+  EXPECT_EQ(work.turned_boxes, 0U);
+  // Nor for those that are turned by nothing, or by a right angle.
+  for (Box& box : boxes) {
+    box = OrientedBox{{std::round(std::get_if<AlignedBox>(&box)->min.x()), 0.0, 0.0},
+                      {1.0, 1.0, 0.0, 0.0},
+                      {0.5, 1.0, 2.0}};
+  }
+  const Scene scene(boxes);
+  const QueryCounters right_angles = workOf([&] {
+    EXPECT_TRUE(scene.castAny({{0.0, -9.0, 0.0}, {0.0, 1.0, 0.0}}));
+  });
+  EXPECT_GT(right_angles.boxes, 0U);
+  EXPECT_EQ(right_angles.turned_boxes, 0U);
+}
+
+TEST(SkippedWork, WhatFloatExcludesIsNotComparedInDouble) {
+  for (const std::size_t count : {10U, 100U, 5000U}) {
+    const Scene scene(turnedBoxes(count));
+    const double beside = 2.0 * sideOf(count);
+    const QueryCounters work = workOf([&] {
+      for (const Ray& ray : raysAmong(count)) {
+        EXPECT_FALSE(scene.castAny({{beside, beside, ray.origin.z()}, {1.0, 0.1, 0.0}}));
+      }
+    });
+    EXPECT_EQ(work.boxes, 0U) << count;
+  }
+}
+
+TEST(SkippedWork, WhatDoubleDecidesIsNotDecidedExactly) {
+  const Scene scene(turnedBoxes(2000));
+  std::size_t hits = 0;
+  const QueryCounters work = workOf([&] {
+    for (const Ray& ray : raysAmong(scene.size())) {
+      hits += scene.cast(ray).hit ? 1 : 0;
+      scene.clearance({ray.origin, ray.origin + ray.direction});
+    }
+  });
+  EXPECT_GT(hits, kRays / 3);
+  EXPECT_EQ(work.certified_decisions, 0U);
+  EXPECT_EQ(work.exact_decisions, 0U);
+  EXPECT_EQ(work.exact_roundings, 0U);
+}
+
+TEST(SkippedWork, WhatLiesBehindTheHitOrTheRangeIsNotLookedAt) {
+  const std::vector<Box> boxes = turnedBoxes(20000);
+  const QueryCounters far = castAll(Scene(boxes));
+  const QueryCounters near = castAll(Scene(boxes), 1.0);
+  EXPECT_LT(2 * near.nodes, far.nodes);
+  EXPECT_LT(2 * near.boxes, far.boxes);
+  const Scene scene(boxes);
+  const QueryCounters all = workOf([&] {
+    for (const Ray& ray : raysAmong(scene.size())) {
+      scene.findAll(ray);
+    }
+  });
+  EXPECT_LT(far.boxes, all.boxes) << "what is behind the first hit";
+}
+
+TEST(SkippedWork, DoubtIsCounted) {
+  // Two boxes with one face: which of them is entered first, doubles cannot say.
+  const OrientedBox box{{5.0, 0.0, 0.0}, {1.0, 0.1, 0.2, 0.3}, {1.0, 1.0, 1.0}};
+  OrientedBox longer = box;
+  longer.orientation = {2.0, 0.2, 0.4, 0.6};
+  const Scene scene({box, longer});
+  const QueryCounters work = workOf([&] {
+    EXPECT_EQ(scene.cast({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}).box, 0U);
+  });
+  EXPECT_EQ(work.boxes, 2U);
+  EXPECT_EQ(work.turned_boxes, 2U);
+  EXPECT_GT(work.certified_decisions + work.exact_decisions, 0U);
+}
+
+TEST(SkippedWork, ABatchCountsWhatItsThreadsDo) {
+  const Scene scene(turnedBoxes(2000));
+  const std::vector<Ray> rays = raysAmong(scene.size());
+  const QueryCounters single = castAll(scene);
+  for (const int threads : {1, 3}) {
+    QueryCounters batch;
+    BatchOptions options;
+    options.max_threads = threads;
+    options.counters = &batch;
+    castClosestEach(scene, rays, options);
+    EXPECT_EQ(batch.nodes, single.nodes);
+    EXPECT_EQ(batch.boxes, single.boxes);
+    castClosestEach(scene, rays, options);
+    EXPECT_EQ(batch.nodes, 2 * single.nodes);
+  }
+}
+
+TEST(SkippedWork, IsCountedForEachThread) {
+  const Scene scene(turnedBoxes(100));
+  const QueryCounters here = workOf([&] { std::thread([&] { castAll(scene); }).join(); });
+  EXPECT_EQ(here.nodes, 0U);
+}
+
+}  // namespace
+}  // namespace box_query
