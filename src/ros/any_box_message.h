@@ -9,6 +9,7 @@
 #include <map>
 #include <string>
 
+#include <boost/shared_ptr.hpp>
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
 
@@ -19,6 +20,8 @@ struct AnyBoxMessage {
       : max_boxes(max_boxes_per_message) {}
 
   std::size_t max_boxes;
+  /// The header of the connection that it came through.
+  boost::shared_ptr<const std::map<std::string, std::string>> connection;
   const BoxSource* source = nullptr;  ///< null: its type is not understood, decoded.problem says so
   DecodedMessage decoded;
 };
@@ -63,6 +66,7 @@ struct PreDeserialize<box_query::AnyBoxMessage> {
       const auto found = header.find(name);
       return found == header.end() ? std::string() : found->second;
     };
+    params.message->connection = params.connection_header;
     params.message->source =
         box_query::findSource(field("type"), field("md5sum"), params.message->decoded.problem);
   }

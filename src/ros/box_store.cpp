@@ -125,33 +125,37 @@ std::size_t BoxStore::clear(std::size_t topic_index) {
   return boxes;
 }
 
-void BoxStore::forgetBefore(std::size_t topic_index, std::uint64_t word) {
+std::size_t BoxStore::forgetBefore(std::size_t topic_index, std::uint64_t word) {
   Topic& topic = topics_.at(topic_index);
+  std::size_t boxes = 0;
   for (auto items = topic.items.begin(); items != topic.items.end();) {
-    items = forgetBefore(topic, items, word);
+    boxes += forgetBefore(topic, items, word);
   }
+  return boxes;
 }
 
-void BoxStore::forgetBefore(std::size_t topic_index, const std::string& ns, std::uint64_t word) {
+std::size_t BoxStore::forgetBefore(std::size_t topic_index, const std::string& ns,
+                                   std::uint64_t word) {
   Topic& topic = topics_.at(topic_index);
-  const auto items = topic.items.find(ns);
-  if (items != topic.items.end()) {
-    forgetBefore(topic, items, word);
-  }
+  auto items = topic.items.find(ns);
+  return items == topic.items.end() ? 0 : forgetBefore(topic, items, word);
 }
 
-BoxStore::Items::iterator BoxStore::forgetBefore(Topic& topic, Items::iterator items,
-                                                 std::uint64_t word) {
+/// Moves on to the next namespace.
+std::size_t BoxStore::forgetBefore(Topic& topic, Items::iterator& items, std::uint64_t word) {
+  std::size_t boxes = 0;
   last_item_ = nullptr;
   for (auto next = items->second.begin(); next != items->second.end();) {
     if (next->second.latest_word <= word) {
+      boxes += boxesOf(next->second);
       forget(topic, next->second);
       next = items->second.erase(next);
     } else {
       ++next;
     }
   }
-  return items->second.empty() ? topic.items.erase(items) : std::next(items);
+  items = items->second.empty() ? topic.items.erase(items) : std::next(items);
+  return boxes;
 }
 
 std::int64_t BoxStore::nextId(std::size_t topic, const std::string& ns) const {

@@ -83,9 +83,9 @@ class BoxStore {
   /// @return the number of boxes that were placed or waiting.
   std::size_t clear(std::size_t topic);
   /// Forgets what the topic has not said again since that word: all of it, or that of one
-  /// namespace.
-  void forgetBefore(std::size_t topic, std::uint64_t word);
-  void forgetBefore(std::size_t topic, const std::string& ns, std::uint64_t word);
+  /// namespace. @return the number of boxes that were placed or waiting.
+  std::size_t forgetBefore(std::size_t topic, std::uint64_t word);
+  std::size_t forgetBefore(std::size_t topic, const std::string& ns, std::uint64_t word);
   /// An id above all others of the namespace; 0 if it has none.
   std::int64_t nextId(std::size_t topic, const std::string& ns) const;
   /// Words that are heard from now on have higher numbers.
@@ -117,7 +117,7 @@ class BoxStore {
   Item& itemOf(const Word& word);
   static void setMissing(Topic& topic, Item& item, std::size_t waiting, std::size_t rejected);
   void forget(Topic& topic, Item& item);
-  Items::iterator forgetBefore(Topic& topic, Items::iterator items, std::uint64_t word);
+  std::size_t forgetBefore(Topic& topic, Items::iterator& items, std::uint64_t word);
 
   std::vector<Topic> topics_;
   std::uint64_t last_word_ = 0;

@@ -88,6 +88,13 @@ void BoxTracker::setUnheard(std::size_t topic_index, std::size_t publishers,
   }
 }
 
+void BoxTracker::forgetBefore(std::size_t topic, std::uint64_t word) {
+  const std::size_t rejected = store_.rejected(topic);
+  const std::size_t boxes = store_.forgetBefore(topic, word);
+  counts_.dropped_boxes += boxes;
+  changes_ += boxes > 0 || store_.rejected(topic) != rejected ? 1 : 0;
+}
+
 void BoxTracker::apply(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now) {
   if (change.kind == BoxChange::Kind::kClear) {
     store_.clear(topic);

@@ -42,6 +42,11 @@ class BoxTracker {
   /// publisher that came last, heard or not: the master knows no more.
   void setUnheard(std::size_t topic, std::size_t publishers, const std::string& type);
 
+  /// Forgets what the topic has not said again since that word.
+  void forgetBefore(std::size_t topic, std::uint64_t word);
+  /// Words that are received from now on have higher numbers.
+  std::uint64_t lastWord() const { return store_.lastWord(); }
+
   /// Places the boxes whose transform has come; gives up those that waited too long.
   void settle(Clock::time_point now);
   /// Drops boxes whose lifetime has ended, and those of stale topics that are to be dropped.

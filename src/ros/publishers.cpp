@@ -38,4 +38,31 @@ std::optional<std::map<std::string, Publishers>> askForPublishers() {
   return publishers;
 }
 
+std::optional<std::map<std::string, std::string>> addressesOfPublishers(const std::string& topic) {
+  XmlRpc::XmlRpcValue request;
+  XmlRpc::XmlRpcValue response;
+  XmlRpc::XmlRpcValue state;
+  request[0] = ros::this_node::getName();
+  if (!ros::master::execute("getSystemState", request, response, state, false)) {
+    return std::nullopt;
+  }
+  std::map<std::string, std::string> addresses;
+  try {
+    XmlRpc::XmlRpcValue& published = state[0];
+    for (int i = 0; i < published.size(); ++i) {
+      XmlRpc::XmlRpcValue& nodes = published[i][1];
+      for (int n = 0; static_cast<std::string>(published[i][0]) == topic && n < nodes.size(); ++n) {
+        XmlRpc::XmlRpcValue address;
+        request[1] = nodes[n];
+        if (ros::master::execute("lookupNode", request, response, address, false)) {
+          addresses[nodes[n]] = static_cast<std::string>(address);
+        }
+      }
+    }
+  } catch (const XmlRpc::XmlRpcException&) {
+    return std::nullopt;
+  }
+  return addresses;
+}
+
 }  // namespace box_query

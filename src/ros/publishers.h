@@ -17,4 +17,8 @@ struct Publishers {
 /// By topic; nothing if the master cannot be reached. Does not wait for one that is gone.
 std::optional<std::map<std::string, Publishers>> askForPublishers();
 
+/// The addresses of a topic's publishers by their names, as the master knows them: a node that was
+/// restarted has a new one. Nothing as above.
+std::optional<std::map<std::string, std::string>> addressesOfPublishers(const std::string& topic);
+
 }  // namespace box_query

@@ -2,13 +2,14 @@
 // The walk: box message -> source -> store -> placement (BoxTracker) -> new Scene -> one pointer
 // swapped. Here are the threads: one hears boxes, one hears tf, and a worker places what waited and
 // builds ahead. Whoever asks builds too, if the worker has not yet.
-#include "ros/any_box_message.h"
 #include "ros/bell.h"
+#include "ros/box_topics.h"
 #include "ros/box_tracker.h"
 #include "ros/kept_scenes.h"
 #include "ros/latest.h"
 #include "ros/name_order.h"
 #include "ros/publishers.h"
+#include "ros/succession.h"
 #include "ros/transforms.h"
 
 #include <box_query/ros/scene_monitor.h>
@@ -22,12 +23,9 @@
 #include <thread>
 #include <utility>
 
-#include <ros/callback_queue.h>
 #include <ros/console.h>
 #include <ros/init.h>
-#include <ros/spinner.h>
-#include <ros/subscribe_options.h>
-#include <ros/subscriber.h>
+#include <ros/this_node.h>
 
 namespace box_query {
 namespace {
@@ -75,18 +73,11 @@ SnapshotPtr snapshotOf(const BuiltPtr& built) {
 }  // namespace
 
 struct SceneMonitor::Impl {
-  struct Topic {
-    ros::Subscriber subscriber;
-    // At the last look:
-    bool connected = false;  ///< to a publisher
-    bool missing = false;    ///< the master knew of more publishers than were connected
-  };
-
   Impl(const ros::NodeHandle& node, const Parameters& given);
   void stop();
 
-  void subscribe(std::size_t topic);
   void checkPublishers();
+  void forgetFormerPublishers();
   void receive(std::size_t topic, AnyBoxMessage& message);
   void noticeTime();
 
@@ -99,15 +90,14 @@ struct SceneMonitor::Impl {
   bool queriedLately();
 
   const Parameters parameters;
-  ros::NodeHandle nh;
   Bell bell;                           ///< for the worker
   std::atomic<bool> tf_wanted{false};  ///< transforms ring the bell
   Transforms transforms;
-  std::vector<Topic> topics;  ///< of the constructor, then of the worker
 
   std::mutex mutex;  ///< guards the next five
   BoxTracker tracker;
-  ros::Time now;  ///< when last looked at
+  std::vector<Succession> successions;  ///< of the publishers of each topic
+  ros::Time now;                        ///< when last looked at
   std::uint64_t builds = 0;
   std::uint64_t refits = 0;
   std::uint64_t unbuilt_changes = 0;
@@ -125,30 +115,26 @@ struct SceneMonitor::Impl {
   std::uint64_t announced_boxes = 0;  ///< of the worker
 
   std::atomic<bool> stopping{false};
-  ros::CallbackQueue queue;
-  ros::AsyncSpinner spinner;
+  BoxTopics topics;
   std::thread worker;
 };
 
 SceneMonitor::Impl::Impl(const ros::NodeHandle& node, const Parameters& given)
     : parameters(resolved(node, given)),
-      nh(node),
       transforms(node, ros::Duration(parameters.transform_history),
                  [this] {
                    if (tf_wanted) {
                      bell.ring();
                    }
                  }),
-      topics(parameters.box_topics.size()),
       tracker(parameters, transforms.buffer()),
+      successions(parameters.box_topics.size(), Succession(ros::this_node::getName())),
       now(ros::Time::now()),
       latest(firstOf(tracker)),
       kept(parameters),
-      spinner(1, &queue) {
-  for (std::size_t topic = 0; topic < topics.size(); ++topic) {
-    subscribe(topic);
-  }
-  spinner.start();
+      topics(node, parameters,
+             [this](std::size_t topic, AnyBoxMessage& message) { receive(topic, message); }) {
+  topics.start();
   worker = std::thread([this] { work(); });
 }
 
@@ -157,48 +143,33 @@ void SceneMonitor::Impl::stop() {
   stopping = true;
   bell.ring();
   worker.join();
-  for (Topic& topic : topics) {
-    topic.subscriber.shutdown();  // waits for a callback that runs
-  }
-  spinner.stop();
+  topics.stop();
 }
 
-void SceneMonitor::Impl::subscribe(std::size_t topic) {
-  // Each message changes what the ones before said, so none may be dropped: the queue is unbounded.
-  // Decoding is faster than the network.
-  constexpr std::uint32_t kUnbounded = 0;
-  const auto max_boxes = static_cast<std::size_t>(parameters.max_boxes_per_message);
-  const boost::function<void(const boost::shared_ptr<AnyBoxMessage>&)> callback =
-      [this, topic](const boost::shared_ptr<AnyBoxMessage>& message) { receive(topic, *message); };
-  ros::SubscribeOptions options;
-  options.initByFullCallbackType<const boost::shared_ptr<AnyBoxMessage>&>(
-      parameters.box_topics[topic].topic, kUnbounded, callback,
-      [max_boxes] { return boost::make_shared<AnyBoxMessage>(max_boxes); });
-  options.callback_queue = &queue;
-  options.transport_hints = ros::TransportHints().tcpNoDelay();
-  topics[topic].subscriber = nh.subscribe(options);
-}
-
-/// The first publisher pins a subscription of any type to its own type for good, and roscpp refuses
-/// publishers of another. Where none is connected, subscribing anew lets the next one be of any
-/// type again; where one is, the others cannot be heard, and the scene is incomplete.
 void SceneMonitor::Impl::checkPublishers() {
-  const auto known = askForPublishers();
-  for (std::size_t index = 0; known && index < topics.size() && !stopping; ++index) {
-    Topic& topic = topics[index];
-    const auto found = known->find(parameters.box_topics[index].topic);
-    const Publishers published = found == known->end() ? Publishers() : found->second;
-    const std::size_t connected = topic.subscriber.getNumPublishers();
-    const bool missing = published.nodes > connected;
-    if (connected == 0 && (topic.connected || missing)) {
-      topic.subscriber.shutdown();
-      subscribe(index);
+  topics.checkPublishers(
+      [this](std::size_t topic, std::size_t publishers, const std::string& type) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        tracker.setUnheard(topic, publishers, type);
+      });
+}
+
+/// What the publishers of a topic said before they made way for new ones is forgotten.
+void SceneMonitor::Impl::forgetFormerPublishers() {
+  std::unique_lock<std::mutex> lock(mutex);
+  for (std::size_t topic = 0; topic < successions.size(); ++topic) {
+    if (successions[topic].asks(Clock::now())) {
+      lock.unlock();
+      auto known = addressesOfPublishers(parameters.box_topics[topic].topic);
+      const std::size_t connected = topics.publishers(topic);
+      lock.lock();
+      if (!known || known->size() < connected) {
+        continue;  // the master was restarted: who it does not know may be there all the same
+      }
+      if (const auto last_word = successions[topic].look(std::move(*known))) {
+        tracker.forgetBefore(topic, *last_word);
+      }
     }
-    const bool unheard = connected > 0 && missing && topic.missing;  // not just on its way
-    topic.connected = connected > 0;
-    topic.missing = missing;
-    const std::lock_guard<std::mutex> lock(mutex);
-    tracker.setUnheard(index, unheard ? published.nodes - connected : 0, published.type);
   }
 }
 
@@ -207,6 +178,7 @@ void SceneMonitor::Impl::receive(std::size_t topic, AnyBoxMessage& message) {
   {
     const std::lock_guard<std::mutex> lock(mutex);
     noticeTime();
+    successions[topic].hear(message.connection, tracker.lastWord(), Clock::now());
     tracker.receive(topic, message.source, std::move(message.decoded), now);
     tf_wanted = tracker.isWaiting();
   }
@@ -300,6 +272,7 @@ void SceneMonitor::Impl::work() {
   Clock::time_point publisher_check = Clock::now();
   while (!stopping) {
     const std::uint64_t rings = bell.rings();
+    forgetFormerPublishers();
     tick();
     if (Clock::now() >= publisher_check) {
       checkPublishers();

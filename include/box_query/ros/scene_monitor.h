@@ -87,7 +87,7 @@ struct MonitorStatistics {
   std::map<std::string, std::uint64_t> rejections;  ///< the same, by reason
   std::uint64_t ignored_markers = 0;                ///< markers of a type that is no box
   std::uint64_t expired_boxes = 0;                  ///< lifetime over
-  std::uint64_t dropped_boxes = 0;                  ///< their topic became stale
+  std::uint64_t dropped_boxes = 0;                  ///< their topic was stale, or was taken over
   std::uint64_t given_up_boxes = 0;                 ///< their transform never came
   std::uint64_t overflowed_boxes = 0;               ///< more waiting than allowed
   std::uint64_t builds = 0;                         ///< scenes built
