@@ -39,6 +39,8 @@ const std::vector<std::string>& workloadKinds();
 Workload pairWorkload(bool apart, std::size_t rays, std::uint64_t seed);
 /// Every n-th of the recorded scenes in `directory`; empty if there are none.
 Workload recordedScenes(const std::string& directory, std::size_t every, std::size_t rays);
+/// The same, scenes of one file together until they have 130 boxes.
+Workload mergedScenes(const std::string& directory, std::size_t every, std::size_t rays);
 
 /// A question about a scene and a ray; kBuild: how long the scene takes to be made.
 enum class Question {
@@ -55,6 +57,15 @@ constexpr Question kQuestions[] = {Question::kClosest30, Question::kClosest, Que
                                    Question::kAny30,     Question::kAll30,   Question::kSegment,
                                    Question::kClearance, Question::kBuild};
 const char* nameOf(Question question);
+
+/// How a question is asked: a ray a call; many rays a call on one thread; the same on one and on
+/// two threads, by the clock on the wall.
+enum class Mode { kSingle, kBatch, kThreads };
+const char* nameOf(Mode mode);
+constexpr Question kBatchQuestions[] = {Question::kClosest30, Question::kRounded30,
+                                        Question::kAny30, Question::kSegment, Question::kClearance};
+constexpr Question kThreadQuestions[] = {Question::kClosest30, Question::kClearance};
+
 /// How far closest, any and all queries look [m], and the lengths of segments.
 constexpr double kRange = 30.0;
 constexpr double kSegmentLength = 10.0;
@@ -73,6 +84,12 @@ struct SpeedAnswer {
 inline SpeedAnswer allOf(std::size_t count) {
   return {count > 0 ? 0 : kNoBox, static_cast<double>(count)};
 }
+inline std::uint64_t hashOf(const SpeedAnswer& answer) {
+  return answer.box + static_cast<std::uint64_t>(answer.value * 1e6);
+}
+
+/// The way of those that have no call for many rays.
+constexpr const char* kOneByOne = "one by one";
 
 /// A method over the boxes of one scene. What it cannot be asked it says by canAnswer().
 class SpeedMethod {
@@ -82,6 +99,16 @@ class SpeedMethod {
   virtual SpeedAnswer ask(Question question, const Ray& ray) const = 0;
   /// Asks about all rays, so that what is timed is one call, and returns a sum of the answers.
   virtual std::uint64_t pass(Question question, const std::vector<Ray>& rays) const = 0;
+
+  /// Ways to ask about many rays in one call that are worth a comparison.
+  virtual std::vector<std::string> batchWays(Question /*question*/) const { return {}; }
+  /// @param answers as many as rays
+  virtual void askEach(Question question, const std::vector<Ray>& rays, std::size_t /*way*/,
+                       std::vector<SpeedAnswer>& answers) const {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      answers[i] = ask(question, rays[i]);
+    }
+  }
 };
 
 /// The loop of pass(), for each method compiled with its own ask().
@@ -89,8 +116,7 @@ template <typename Method>
 std::uint64_t passOf(const Method& method, Question question, const std::vector<Ray>& rays) {
   std::uint64_t sum = 0;
   for (const Ray& ray : rays) {
-    const SpeedAnswer answer = method.Method::ask(question, ray);
-    sum = 31 * sum + answer.box + static_cast<std::uint64_t>(answer.value * 1e6);
+    sum = 31 * sum + hashOf(method.Method::ask(question, ray));
   }
   return sum;
 }
@@ -113,8 +139,9 @@ struct SpeedRow {
   std::string workload;
   std::size_t boxes;  ///< in the mean
   Question question;
+  Mode mode;
   std::string method;
-  Timing timing;  ///< Ratios: to box_query. Of kBuild, a box.
+  Timing timing;  ///< Ratios: to box_query, of kThreads on two threads. Of kBuild, a box.
   /// Answers that were compared with exact ones.
   std::size_t asked = 0;
   std::size_t hits = 0;
@@ -126,6 +153,7 @@ struct SpeedRow {
 struct SpeedOptions {
   int rounds = 15;           ///< Turns of each method on the clock.
   std::size_t sample = 500;  ///< Rays whose answers are compared, fewer where boxes are very many.
+  std::size_t batch = 8192;  ///< Rays of a call: those of the scene, again and again.
 };
 
 std::vector<SpeedRow> measureSpeed(const Workload& workload, const SpeedOptions& options,

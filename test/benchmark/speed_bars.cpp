@@ -17,6 +17,7 @@ constexpr std::size_t kAnySize = std::numeric_limits<std::size_t>::max();
 struct Promise {
   const char* name;
   Question question;
+  Mode mode;
   std::vector<std::string> kinds;  ///< None: all scenes.
   std::size_t least;
   std::size_t most;
@@ -29,86 +30,58 @@ const std::vector<std::string> kAll = {};
 const std::vector<std::string> kEmbree = {"Embree"};
 
 const std::vector<Promise>& promises() {
+  using Q = Question;
+  constexpr Mode kOne = Mode::kSingle;
+  constexpr Mode kMany = Mode::kBatch;
   static const std::vector<Promise> all = {
+      // clang-format off
       {"closest of 16 in cache, eight double slabs at once over ours",
-       Question::kClosest30,
-       {"pairs"},
-       0,
-       kAnySize,
-       {"double slabs, eight at once"},
-       1.0},
+       Q::kClosest30, kOne, {"pairs"}, 0, kAnySize, {"double slabs, eight at once"}, 1.0},
       {"closest of 16 in cache, listing 9 over ours",
-       Question::kClosest30,
-       {"pairs"},
-       0,
-       kAnySize,
-       {"listing 9"},
-       10.0},
-      {"distance of 16 in cache, plain scalar one over ours",
-       Question::kClearance,
-       {"pairs apart"},
-       0,
-       kAnySize,
-       {"double slabs, one by one"},
-       10.0},
-      {"closest of 8 to 32, Embree over ours", Question::kClosest30, kEven, 8, 32, kEmbree, 1.5},
+       Q::kClosest30, kOne, {"pairs"}, 0, kAnySize, {"listing 9"}, 10.0},
+      {"distance of 16 in cache, plain scalar ones over ours",
+       Q::kClearance, kOne, {"pairs apart"}, 0, kAnySize, {"double slabs, one by one"}, 10.0},
+      {"closest of 8 to 32, Embree over ours",
+       Q::kClosest30, kOne, kEven, 8, 32, kEmbree, 1.5},
       {"closest of recorded scenes, Embree over ours",
-       Question::kClosest30,
-       {"recorded", "merged"},
-       0,
-       kAnySize,
-       kEmbree,
-       1.5},
-      {"closest of 64 to 256, Embree over ours", Question::kClosest30, kEven, 64, 256, kEmbree,
-       1.4},
+       Q::kClosest30, kOne, {"recorded", "merged"}, 0, kAnySize, kEmbree, 1.5},
+      {"closest of 64 to 256, Embree over ours",
+       Q::kClosest30, kOne, kEven, 64, 256, kEmbree, 1.4},
       {"closest of 1,000 to 100,000 sparse, Embree over ours",
-       Question::kClosest30,
-       {"sparse"},
-       1000,
-       100000,
-       kEmbree,
-       1.3},
+       Q::kClosest30, kOne, {"sparse"}, 1000, 100000, kEmbree, 1.3},
       {"closest of 1,000 to 100,000 dense, Embree over ours",
-       Question::kClosest30,
-       {"dense"},
-       1000,
-       100000,
-       kEmbree,
-       1.5},
+       Q::kClosest30, kOne, {"dense"}, 1000, 100000, kEmbree, 1.5},
       {"closest of 1,000 to 100,000 in clusters, Embree over ours",
-       Question::kClosest30,
-       {"clusters"},
-       1000,
-       100000,
-       kEmbree,
-       1.3},
+       Q::kClosest30, kOne, {"clusters"}, 1000, 100000, kEmbree, 1.3},
       {"closest of 1,000 to 100,000 needles, Embree over ours",
-       Question::kClosest30,
-       {"needles"},
-       1000,
-       100000,
-       kEmbree,
-       1.8},
-      {"closest of 1,000 to 100,000 shelves, Embree over ours",
-       Question::kClosest30,
-       {"shelves"},
-       1000,
-       100000,
-       kEmbree,
-       1.0},
-      {"any, Embree over ours", Question::kAny30, kAll, 0, kAnySize, kEmbree, 1.2},
-      {"segment, Embree over ours", Question::kSegment, kAll, 0, kAnySize, kEmbree, 1.2},
-      {"closest, Bullet over ours", Question::kClosest30, kAll, 0, kAnySize, {"Bullet"}, 8.0},
-      {"any, Bullet over ours", Question::kAny30, kAll, 0, kAnySize, {"Bullet"}, 8.0},
-      {"clearance of 8 to 128, Embree's point query over ours", Question::kClearance, kEven, 8, 128,
-       kEmbree, 2.0},
+       Q::kClosest30, kOne, {"needles"}, 1000, 100000, kEmbree, 1.8},
+      {"closest of 1,000 to 100,000 on shelves, Embree over ours",
+       Q::kClosest30, kOne, {"shelves"}, 1000, 100000, kEmbree, 1.0},
+      {"any, Embree over ours",
+       Q::kAny30, kOne, kAll, 0, kAnySize, kEmbree, 1.2},
+      {"segment, Embree over ours",
+       Q::kSegment, kOne, kAll, 0, kAnySize, kEmbree, 1.2},
+      {"closest, Bullet over ours",
+       Q::kClosest30, kOne, kAll, 0, kAnySize, {"Bullet"}, 8.0},
+      {"any, Bullet over ours",
+       Q::kAny30, kOne, kAll, 0, kAnySize, {"Bullet"}, 8.0},
+      {"segment, Bullet over ours",
+       Q::kSegment, kOne, kAll, 0, kAnySize, {"Bullet"}, 8.0},
+      {"closest in batches, 1,000, Embree's best over ours",
+       Q::kClosest30, kMany, kEven, 1000, 1000, kEmbree, 1.3},
+      {"closest in batches, 10,000, Embree's best over ours",
+       Q::kClosest30, kMany, kEven, 10000, 10000, kEmbree, 2.0},
+      {"closest in batches, 100,000, Embree's best over ours",
+       Q::kClosest30, kMany, kEven, 100000, 100000, kEmbree, 2.5},
+      {"closest in batches of 1,000 and more, one thread over two",
+       Q::kClosest30, Mode::kThreads, kEven, 1000, kAnySize, {"box_query, 1 thread"}, 1.8},
+      {"clearance of 8 to 128, Embree's point query over ours",
+       Q::kClearance, kOne, kEven, 8, 128, kEmbree, 2.0},
       {"clearance of 1,000 and more, FCL and Bullet over ours",
-       Question::kClearance,
-       kEven,
-       1000,
-       kAnySize,
-       {"FCL", "Bullet"},
-       10.0},
+       Q::kClearance, kOne, kEven, 1000, kAnySize, {"FCL", "Bullet"}, 10.0},
+      {"clearance in batches of 1,000 and more, FCL and Bullet over ours",
+       Q::kClearance, kMany, kEven, 1000, kAnySize, {"FCL", "Bullet"}, 15.0},
+      // clang-format on
   };
   return all;
 }
@@ -126,8 +99,8 @@ bool contains(const std::vector<std::string>& all, const std::string& one) {
 std::vector<const SpeedRow*> cellsOf(const Promise& promise, const std::vector<SpeedRow>& rows) {
   std::vector<const SpeedRow*> cells;
   for (const SpeedRow& row : rows) {
-    if (row.question != promise.question || row.boxes < promise.least || row.boxes > promise.most ||
-        !beginsWithOneOf(row.method, promise.methods) ||
+    if (row.question != promise.question || row.mode != promise.mode || row.boxes < promise.least ||
+        row.boxes > promise.most || !beginsWithOneOf(row.method, promise.methods) ||
         (!promise.kinds.empty() && !contains(promise.kinds, row.workload))) {
       continue;
     }

@@ -75,6 +75,10 @@ class Bullet final : public SpeedMethod {
   std::uint64_t pass(Question question, const std::vector<Ray>& rays) const override {
     return passOf(*this, question, rays);
   }
+  std::vector<std::string> batchWays(Question question) const override {
+    return question == Question::kClearance ? std::vector<std::string>{kOneByOne}
+                                            : std::vector<std::string>{};
+  }
 
  private:
   /// Depth first, what is nearer first, without what is behind the best box.

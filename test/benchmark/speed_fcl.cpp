@@ -49,6 +49,10 @@ class Fcl final : public SpeedMethod {
   std::uint64_t pass(Question question, const std::vector<Ray>& rays) const override {
     return passOf(*this, question, rays);
   }
+  std::vector<std::string> batchWays(Question question) const override {
+    return question == Question::kClearance ? std::vector<std::string>{kOneByOne}
+                                            : std::vector<std::string>{};
+  }
 
  private:
   struct Nearest {

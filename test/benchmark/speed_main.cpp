@@ -15,7 +15,7 @@ using namespace box_query::benchmark;
 
 constexpr const char* kUsage =
     R"(How fast scenes answer, beside what a user would pick instead: the same questions in turns in one run, one ray a
-call, with the number of wrong answers beside every time.
+call and many, with the number of wrong answers beside every time.
 
   --quick        fewer sizes and turns: some minutes
   --most N       boxes of the largest scene (1000000)
@@ -97,8 +97,13 @@ class Run {
     const char* shared = std::getenv("BOX_QUERY_SHARED");
     if (shared == nullptr) {
       std::cout << "recorded: not measured, since BOX_QUERY_SHARED is not set\n";
-    } else if (isWanted("recorded", 0)) {
+      return;
+    }
+    if (isWanted("recorded", 0)) {
       measure(recordedScenes(shared, arguments_.quick ? 100 : 40, 64), speedMethods());
+    }
+    if (isWanted("merged", 130)) {
+      measure(mergedScenes(shared, arguments_.quick ? 20 : 4, 64), speedMethods());
     }
   }
 

@@ -14,6 +14,13 @@ constexpr std::size_t kMostToBuild = 100000;
 /// Boxes that answers are compared with, one by one, for a line of the table.
 constexpr std::size_t kMostCompared = 100000000;
 
+/// One way of one method.
+struct Contender {
+  std::size_t method;
+  std::string name;
+  std::size_t way = 0;  ///< Of a batch.
+};
+
 /// All methods, each with all scenes of a workload.
 class Measurement {
  public:
@@ -29,29 +36,63 @@ class Measurement {
         }
       }
     }
+    const std::vector<Ray>& rays = workload.scenes.front().rays;
+    while (batch_.size() < options.batch) {
+      batch_.push_back(rays[batch_.size() % rays.size()]);
+    }
   }
 
-  std::vector<SpeedRow> ask(Question question) const {
-    std::vector<std::size_t> who;
+  /// Of several scenes at a time there is no batch.
+  bool hasBatches() const { return workload_.scenes.size() == 1; }
+
+  void single(Question question) {
+    std::vector<Contender> contenders;
     std::vector<Pass> passes;
     for (std::size_t m = 0; m < kinds_.size(); ++m) {
       if (!methods_[m].empty() && methods_[m].front()->canAnswer(question)) {
-        who.push_back(m);
+        contenders.push_back({m, kinds_[m].name});
         passes.push_back([this, m, question] { return pass(m, question); });
       }
     }
-    std::vector<SpeedRow> rows = time(question, who, passes, rays_);
-    compare(question, who, rows);
-    return rows;
+    time(question, Mode::kSingle, contenders, passes, rays_);
+    compare(question, contenders,
+            [&](const Contender& contender, std::size_t scene, std::size_t ray) {
+              return methods_[contender.method][scene]->ask(question,
+                                                            workload_.scenes[scene].rays[ray]);
+            });
   }
 
-  /// A box at a time, all that a method does before it can be asked.
-  std::vector<SpeedRow> build() const {
-    std::vector<std::size_t> who;
+  /// On one thread, beside what others have for it.
+  void batch(Question question) {
+    std::vector<Contender> contenders = {{0, kinds_[0].name}};
+    for (std::size_t m = 1; m < kinds_.size(); ++m) {
+      if (!methods_[m].empty()) {
+        const std::vector<std::string> ways = methods_[m].front()->batchWays(question);
+        for (std::size_t way = 0; way < ways.size(); ++way) {
+          contenders.push_back({m, kinds_[m].name + ", " + ways[way], way});
+        }
+      }
+    }
+    batch(question, Mode::kBatch, contenders);
+  }
+
+  /// Of the first method, one after the other, beside the last of them.
+  void threads(Question question) {
+    std::vector<Contender> contenders;
+    const std::vector<std::string> ways = methods_[0].front()->batchWays(question);
+    for (std::size_t way = 0; way < ways.size(); ++way) {
+      contenders.push_back({0, kinds_[0].name + ", " + ways[way], way});
+    }
+    batch(question, Mode::kThreads, contenders);
+  }
+
+  /// All that a method does before it can be asked.
+  void build() {
+    std::vector<Contender> contenders;
     std::vector<Pass> passes;
     for (std::size_t m = 0; m < kinds_.size(); ++m) {
       if (kinds_[m].is_built && (m == 0 || boxesOfAScene() <= kMostToBuild)) {
-        who.push_back(m);
+        contenders.push_back({m, kinds_[m].name});
         passes.push_back([this, m] {
           std::uint64_t made = 0;
           for (const SpeedScene& scene : workload_.scenes) {
@@ -61,8 +102,10 @@ class Measurement {
         });
       }
     }
-    return time(Question::kBuild, who, passes, boxes_);
+    time(Question::kBuild, Mode::kSingle, contenders, passes, boxes_);
   }
+
+  std::vector<SpeedRow> take() { return std::move(rows_); }
 
  private:
   std::size_t boxesOfAScene() const { return boxes_ / workload_.scenes.size(); }
@@ -78,18 +121,45 @@ class Measurement {
     return sum;
   }
 
-  std::vector<SpeedRow> time(Question question, const std::vector<std::size_t>& who,
-                             const std::vector<Pass>& passes, std::size_t queries) const {
-    const std::vector<Timing> timings = timeSideBySide(passes, queries, options_.rounds, 0);
-    std::vector<SpeedRow> rows;
-    for (std::size_t k = 0; k < who.size(); ++k) {
-      rows.push_back({workload_.name, boxesOfAScene(), question, kinds_[who[k]].name, timings[k]});
+  void batch(Question question, Mode mode, const std::vector<Contender>& contenders) {
+    std::vector<std::vector<SpeedAnswer>> answers(contenders.size());
+    std::vector<Pass> passes;
+    for (std::size_t k = 0; k < contenders.size(); ++k) {
+      answers[k].resize(batch_.size());
+      passes.push_back([&, k] {
+        methods_[contenders[k].method].front()->askEach(question, batch_, contenders[k].way,
+                                                        answers[k]);
+        std::uint64_t sum = 0;
+        for (const SpeedAnswer& answer : answers[k]) {
+          sum = 31 * sum + hashOf(answer);
+        }
+        return sum;
+      });
     }
-    return rows;
+    time(question, mode, contenders, passes, batch_.size());
+    compare(question, contenders, [&](const Contender& contender, std::size_t, std::size_t ray) {
+      return answers[static_cast<std::size_t>(&contender - contenders.data())][ray];
+    });
   }
 
-  void compare(Question question, const std::vector<std::size_t>& who,
-               std::vector<SpeedRow>& rows) const {
+  /// Adds a row for each.
+  void time(Question question, Mode mode, const std::vector<Contender>& contenders,
+            const std::vector<Pass>& passes, std::size_t queries) {
+    const bool on_threads = mode == Mode::kThreads;
+    const std::vector<Timing> timings =
+        timeSideBySide(passes, queries, options_.rounds, on_threads ? passes.size() - 1 : 0,
+                       on_threads ? Clock::kWall : Clock::kThread);
+    for (std::size_t k = 0; k < contenders.size(); ++k) {
+      rows_.push_back(
+          {workload_.name, boxesOfAScene(), question, mode, contenders[k].name, timings[k]});
+    }
+  }
+
+  /// Counts in the last rows what answer(contender, scene, ray) is wrong.
+  template <typename AnswerOf>
+  void compare(Question question, const std::vector<Contender>& contenders,
+               const AnswerOf& answer) {
+    SpeedRow* rows = &rows_[rows_.size() - contenders.size()];
     const std::size_t scenes = workload_.scenes.size();
     const std::size_t all =
         std::max<std::size_t>(20, std::min(options_.sample, kMostCompared / boxesOfAScene()));
@@ -99,13 +169,14 @@ class Measurement {
       const std::size_t here = std::min({left, all / scenes + 1, scene.rays.size()});
       left -= here;
       for (std::size_t i = 0; i < here; ++i) {
-        const Ray& ray = scene.rays[i];
-        const SpeedAnswer truth = truthOf(question, scene.boxes, ray);
-        for (std::size_t k = 0; k < who.size(); ++k) {
-          const SpeedAnswer answer = methods_[who[k]][s]->ask(question, ray);
+        const SpeedAnswer truth = truthOf(question, scene.boxes, scene.rays[i]);
+        for (std::size_t k = 0; k < contenders.size(); ++k) {
           ++rows[k].asked;
           rows[k].hits += truth.box != kNoBox ? 1 : 0;
-          rows[k].wrong += isWrong(question, scene.boxes, ray, answer, truth, who[k] == 0) ? 1 : 0;
+          rows[k].wrong += isWrong(question, scene.boxes, scene.rays[i],
+                                   answer(contenders[k], s, i), truth, contenders[k].method == 0)
+                               ? 1
+                               : 0;
         }
       }
     }
@@ -115,23 +186,33 @@ class Measurement {
   const SpeedOptions& options_;
   const std::vector<SpeedMethodKind>& kinds_;
   std::vector<std::vector<std::unique_ptr<SpeedMethod>>> methods_;
+  std::vector<Ray> batch_;
   std::size_t rays_ = 0;
   std::size_t boxes_ = 0;
+  std::vector<SpeedRow> rows_;
 };
 
 }  // namespace
 
 std::vector<SpeedRow> measureSpeed(const Workload& workload, const SpeedOptions& options,
                                    const std::vector<SpeedMethodKind>& methods) {
-  const Measurement measurement(workload, options, methods);
-  std::vector<SpeedRow> rows;
+  Measurement measurement(workload, options, methods);
   for (const Question question : kQuestions) {
-    for (SpeedRow& row :
-         question == Question::kBuild ? measurement.build() : measurement.ask(question)) {
-      rows.push_back(std::move(row));
+    if (question == Question::kBuild) {
+      measurement.build();
+    } else {
+      measurement.single(question);
     }
   }
-  return rows;
+  if (measurement.hasBatches()) {
+    for (const Question question : kBatchQuestions) {
+      measurement.batch(question);
+    }
+    for (const Question question : kThreadQuestions) {
+      measurement.threads(question);
+    }
+  }
+  return measurement.take();
 }
 
 }  // namespace box_query::benchmark

@@ -2,6 +2,10 @@
 #include "benchmark/speed_peers.h"
 #include "benchmark/speed_scans.h"
 
+#include <box_query/batch.h>
+
+#include <algorithm>
+
 namespace box_query::benchmark {
 namespace {
 
@@ -17,10 +21,8 @@ class Ours final : public SpeedMethod {
         return {scene_.castClosest(ray, kRange).box};
       case Question::kClosest:
         return {scene_.castClosest(ray).box};
-      case Question::kRounded30: {
-        const Hit hit = scene_.cast(ray, kRange);
-        return {hit.box, hit.hit ? hit.range : 0.0};
-      }
+      case Question::kRounded30:
+        return answerOf(scene_.cast(ray, kRange));
       case Question::kAny30:
         return {scene_.castAny(ray, kRange) ? 0 : kNoBox};
       case Question::kAll30:
@@ -40,7 +42,55 @@ class Ours final : public SpeedMethod {
     return passOf(*this, question, rays);
   }
 
+  std::vector<std::string> batchWays(Question /*question*/) const override {
+    return {"1 thread", "2 threads"};
+  }
+  void askEach(Question question, const std::vector<Ray>& rays, std::size_t way,
+               std::vector<SpeedAnswer>& answers) const override {
+    const BatchOptions options{kRange, nullptr, static_cast<int>(way + 1)};
+    switch (question) {
+      case Question::kClosest30:
+        take(castClosestEach(scene_, rays, options), answers,
+             [](const ClosestBox& closest) { return SpeedAnswer{closest.box}; });
+        break;
+      case Question::kRounded30:
+        take(castEach(scene_, rays, options), answers, answerOf);
+        break;
+      case Question::kAny30:
+        take(castAnyEach(scene_, rays, options), answers,
+             [](std::uint8_t any) { return SpeedAnswer{any != 0 ? 0 : kNoBox}; });
+        break;
+      case Question::kSegment:
+        take(isClearEach(scene_, segments(rays, kSegmentLength), 0.0, options), answers,
+             [](std::uint8_t clear) { return SpeedAnswer{clear != 0 ? kNoBox : 0}; });
+        break;
+      case Question::kClearance:
+        take(clearanceEach(scene_, segments(rays, kPathLength), options), answers,
+             [](const Clearance& clearance) {
+               return SpeedAnswer{clearance.box, clearance.distance};
+             });
+        break;
+      default:
+        break;
+    }
+  }
+
  private:
+  static SpeedAnswer answerOf(const Hit& hit) { return {hit.box, hit.hit ? hit.range : 0.0}; }
+  static std::vector<Segment> segments(const std::vector<Ray>& rays, double length) {
+    std::vector<Segment> all;
+    all.reserve(rays.size());
+    for (const Ray& ray : rays) {
+      all.push_back(segmentAlong(ray, length));
+    }
+    return all;
+  }
+  template <typename Found, typename Convert>
+  static void take(const std::vector<Found>& found, std::vector<SpeedAnswer>& answers,
+                   const Convert& convert) {
+    std::transform(found.begin(), found.end(), answers.begin(), convert);
+  }
+
   Scene scene_;
 };
 
@@ -64,6 +114,18 @@ const char* nameOf(Question question) {
       return "clearance of 2 m";
     case Question::kBuild:
       return "build, a box";
+  }
+  return "";
+}
+
+const char* nameOf(Mode mode) {
+  switch (mode) {
+    case Mode::kSingle:
+      return "single";
+    case Mode::kBatch:
+      return "batch";
+    case Mode::kThreads:
+      return "threads";
   }
   return "";
 }

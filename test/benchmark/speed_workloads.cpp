@@ -100,27 +100,60 @@ Workload pairWorkload(bool apart, std::size_t rays, std::uint64_t seed) {
   return workload;
 }
 
+namespace {
+
+/// The boxes of every n-th scene of each file.
+std::vector<std::vector<std::vector<OrientedBox>>> recorded(const std::string& directory,
+                                                            std::size_t every) {
+  std::vector<std::filesystem::path> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(directory + "/data")) {
+    if (entry.path().extension() == ".csv") {
+      paths.push_back(entry.path());
+    }
+  }
+  std::sort(paths.begin(), paths.end());
+  std::vector<std::vector<std::vector<OrientedBox>>> files;
+  std::size_t number = 0;
+  for (const auto& path : paths) {
+    files.emplace_back();
+    for (const CsvScene& scene : readBoxCsvFile(path.string())) {
+      if (number++ % every == 0) {
+        std::vector<OrientedBox>& boxes = files.back().emplace_back();
+        for (const CsvBox& box : scene.boxes) {
+          boxes.push_back({box.center, box.orientation, 0.5 * box.size});
+        }
+      }
+    }
+  }
+  return files;
+}
+
+}  // namespace
+
 Workload recordedScenes(const std::string& directory, std::size_t every, std::size_t rays) {
   Workload workload{"recorded", {}};
   Sampler sampler(3);
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(directory + "/data")) {
-    if (entry.path().extension() == ".csv") {
-      files.push_back(entry.path());
+  for (auto& file : recorded(directory, every)) {
+    for (auto& boxes : file) {
+      workload.scenes.push_back(withRays(std::move(boxes), rays, sampler));
     }
   }
-  std::sort(files.begin(), files.end());
-  std::size_t number = 0;
-  for (const auto& file : files) {
-    for (const CsvScene& scene : readBoxCsvFile(file.string())) {
-      if (number++ % every != 0) {
-        continue;
+  return workload;
+}
+
+Workload mergedScenes(const std::string& directory, std::size_t every, std::size_t rays) {
+  constexpr std::size_t kMerged = 130;
+  Workload workload{"merged", {}};
+  Sampler sampler(4);
+  for (const auto& file : recorded(directory, every)) {
+    std::vector<OrientedBox> merged;
+    for (const auto& boxes : file) {
+      merged.insert(merged.end(), boxes.begin(), boxes.end());
+      if (merged.size() >= kMerged) {
+        merged.resize(kMerged);
+        workload.scenes.push_back(withRays(std::move(merged), rays, sampler));
+        merged.clear();
       }
-      std::vector<OrientedBox> boxes;
-      for (const CsvBox& box : scene.boxes) {
-        boxes.push_back({box.center, box.orientation, 0.5 * box.size});
-      }
-      workload.scenes.push_back(withRays(std::move(boxes), rays, sampler));
     }
   }
   return workload;

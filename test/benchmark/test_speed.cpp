@@ -14,9 +14,10 @@
 namespace box_query::benchmark {
 namespace {
 
-std::size_t count(const std::vector<SpeedRow>& rows, Question question, const std::string& method) {
+std::size_t count(const std::vector<SpeedRow>& rows, Question question, Mode mode,
+                  const std::string& method) {
   return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [&](const SpeedRow& row) {
-    return row.question == question && row.method == method;
+    return row.question == question && row.mode == mode && row.method == method;
   }));
 }
 
@@ -28,9 +29,26 @@ void expectAllRows(const std::vector<SpeedRow>& rows, const Workload& workload,
       const bool expected = question == Question::kBuild
                                 ? method.is_built
                                 : method.make(workload.scenes[0].boxes)->canAnswer(question);
-      EXPECT_EQ(expected ? 1U : 0U, count(rows, question, method.name))
+      EXPECT_EQ(expected ? 1U : 0U, count(rows, question, Mode::kSingle, method.name))
           << nameOf(question) << ", " << method.name;
     }
+  }
+}
+
+/// The same of batches, on one thread and on two.
+void expectAllBatches(const std::vector<SpeedRow>& rows, const Workload& workload) {
+  for (const Question question : kBatchQuestions) {
+    EXPECT_EQ(1U, count(rows, question, Mode::kBatch, "box_query"));
+    for (const SpeedMethodKind& method : speedMethods()) {
+      const bool is_ours = method.name == "box_query";
+      for (const std::string& way : method.make(workload.scenes[0].boxes)->batchWays(question)) {
+        EXPECT_EQ(is_ours ? 0U : 1U, count(rows, question, Mode::kBatch, method.name + ", " + way));
+      }
+    }
+  }
+  for (const Question question : kThreadQuestions) {
+    EXPECT_EQ(1U, count(rows, question, Mode::kThreads, "box_query, 1 thread"));
+    EXPECT_EQ(1U, count(rows, question, Mode::kThreads, "box_query, 2 threads"));
   }
 }
 
@@ -44,8 +62,9 @@ void expectNothingWrong(const std::vector<SpeedRow>& rows) {
     }
     EXPECT_EQ(128U, row.asked);
     EXPECT_GT(row.hits, 0U);
+    const bool is_ours = row.method.rfind("box_query", 0) == 0;
     const bool is_plain = row.method.rfind("double slab", 0) == 0 || row.method == "plain scan";
-    if (row.method == "box_query" || is_plain) {
+    if (is_ours || is_plain) {
       EXPECT_EQ(0U, row.wrong);  // Plain ones are in double, and boxes are not hostile.
     }
     // Peers have their own idea of a box: of a ray that starts in one (Bullet), of contact.
@@ -57,8 +76,9 @@ TEST(Speed, ComparesMethodsOnHitsAndMissesAndFindsNothingWrong) {
   for (const std::string& kind : workloadKinds()) {
     for (const std::size_t boxes : {40, 300}) {
       const Workload workload = makeWorkload(kind, boxes, 128, 5);
-      const std::vector<SpeedRow> rows = measureSpeed(workload, {1, 128}, speedMethods());
+      const std::vector<SpeedRow> rows = measureSpeed(workload, {1, 128, 300}, speedMethods());
       expectAllRows(rows, workload, speedMethods());
+      expectAllBatches(rows, workload);
       expectNothingWrong(rows);
       for (const SpeedRow& row : rows) {
         EXPECT_EQ(boxes, row.boxes);
@@ -73,7 +93,7 @@ TEST(Speed, ComparesMethodsOnHitsAndMissesAndFindsNothingWrong) {
 TEST(Speed, ComparesPairsWithPlainSlabsAndThePaper) {
   for (const bool apart : {false, true}) {
     const Workload workload = pairWorkload(apart, 256, 5);
-    const std::vector<SpeedRow> rows = measureSpeed(workload, {1, 128}, pairMethods());
+    const std::vector<SpeedRow> rows = measureSpeed(workload, {1, 128, 300}, pairMethods());
     expectAllRows(rows, workload, pairMethods());
     expectNothingWrong(rows);
     for (const SpeedRow& row : rows) {
@@ -84,7 +104,7 @@ TEST(Speed, ComparesPairsWithPlainSlabsAndThePaper) {
 
 SpeedRow rowOf(const std::string& workload, std::size_t boxes, Question question,
                const std::string& method, double ns, double ratio) {
-  SpeedRow row{workload, boxes, question, method, {}};
+  SpeedRow row{workload, boxes, question, Mode::kSingle, method, {}};
   row.timing.ns.median = ns;
   row.timing.ratio.median = ratio;
   return row;
@@ -130,7 +150,8 @@ TEST(SpeedReport, IsALineARow) {
   writeCsv({row, row}, csv);
   const std::string text = csv.str();
   EXPECT_EQ(3, std::count(text.begin(), text.end(), '\n'));
-  EXPECT_NE(std::string::npos, text.find("dense,16,\"any, 30 m\",\"Embree, boxes\",34.0,")) << text;
+  EXPECT_NE(std::string::npos, text.find("dense,16,\"any, 30 m\",single,\"Embree, boxes\",34.0,"))
+      << text;
 }
 
 TEST(Speed, SaysOfEveryPeerWhetherItWasFound) {

@@ -39,15 +39,15 @@ void keep(std::uint64_t value) {
 /// One contender: how often it is passed in a turn, how many turns it has, and what they took.
 class Contender {
  public:
-  Contender(const Pass& pass, std::size_t queries, int rounds)
-      : pass_(pass), queries_(static_cast<double>(queries)) {
-    double start = threadTime();
+  Contender(const Pass& pass, std::size_t queries, int rounds, Clock clock)
+      : pass_(pass), queries_(static_cast<double>(queries)), clock_(clock) {
+    double start = time();
     sum_ = pass_();
-    double took = threadTime() - start;
+    double took = time() - start;
     if (took < kLongNs) {
-      start = threadTime();
+      start = time();
       check();
-      took = threadTime() - start;
+      took = time() - start;
     }
     is_long_ = took >= kLongNs;
     passes_ = std::max(1, static_cast<int>(kTurnNs / std::max(1.0, took)));
@@ -61,11 +61,11 @@ class Contender {
     if (!is_long_) {
       check();
     }
-    const double start = threadTime();
+    const double start = time();
     for (int pass = 0; pass < passes_; ++pass) {
       check();
     }
-    ns_.push_back((threadTime() - start) / (passes_ * queries_));
+    ns_.push_back((time() - start) / (passes_ * queries_));
   }
 
   Timing timing(const Contender& base) const {
@@ -77,6 +77,7 @@ class Contender {
   }
 
  private:
+  double time() const { return clock_ == Clock::kThread ? threadTime() : now(); }
   void check() const {
     if (pass_() != sum_) {
       throw std::runtime_error("a contender's answers differ from pass to pass");
@@ -85,6 +86,7 @@ class Contender {
 
   const Pass& pass_;
   double queries_;
+  Clock clock_;
   std::uint64_t sum_;
   bool is_long_;
   int passes_;
@@ -109,10 +111,10 @@ Spread spreadOf(std::vector<double> values) {
 }
 
 std::vector<Timing> timeSideBySide(const std::vector<Pass>& passes, std::size_t queries, int rounds,
-                                   std::size_t base) {
+                                   std::size_t base, Clock clock) {
   std::vector<Contender> contenders;
   for (const Pass& pass : passes) {
-    contenders.emplace_back(pass, queries, rounds);
+    contenders.emplace_back(pass, queries, rounds, clock);
   }
   for (int round = 0; round < rounds; ++round) {
     for (std::size_t turn = 0; turn < contenders.size(); ++turn) {
