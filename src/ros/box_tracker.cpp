@@ -52,7 +52,7 @@ void BoxTracker::receive(std::size_t topic_index, const BoxSource* source, Decod
   ++changes_;
   ++counts_.messages;
   dropIfStale(topic_index, now);  // nobody may have looked since it was
-  topic.heard_type = source ? source->type : "";
+  topic.source = source;
   counts_.ignored_markers += message.ignored;
   if (!message.problem.empty()) {
     ++(source ? counts_.malformed_messages : counts_.unknown_type_messages);
@@ -77,15 +77,17 @@ void BoxTracker::receive(std::size_t topic_index, const BoxSource* source, Decod
   }
 }
 
-void BoxTracker::setUnheard(std::size_t topic_index, std::size_t publishers,
-                            const std::string& type) {
+std::string BoxTracker::setUnheard(std::size_t topic_index, std::size_t publishers,
+                                   const std::string& type) {
   Topic& topic = topics_.at(topic_index);
   const std::string latest_type = publishers > 0 ? type : "";
-  if (publishers != topic.unheard || latest_type != topic.latest_type) {
-    topic.unheard = publishers;
-    topic.latest_type = latest_type;
-    ++changes_;
+  if (publishers == topic.unheard && latest_type == topic.latest_type) {
+    return "";
   }
+  topic.unheard = publishers;
+  topic.latest_type = latest_type;
+  ++changes_;
+  return publishers > 0 ? unheardSentence(topic) : "";
 }
 
 void BoxTracker::forgetBefore(std::size_t topic, std::uint64_t word) {

@@ -40,7 +40,10 @@ class BoxTracker {
                const ros::Time& now);
   /// So many publishers of the topic cannot be heard beside the others; `type` is that of the
   /// publisher that came last, heard or not: the master knows no more.
-  void setUnheard(std::size_t topic, std::size_t publishers, const std::string& type);
+  /// @return a sentence that warns of it, if it is news.
+  std::string setUnheard(std::size_t topic, std::size_t publishers, const std::string& type);
+  /// The source of the topic's last message; null if there was none, or it was not understood.
+  const BoxSource* lastSource(std::size_t topic) const { return topics_.at(topic).source; }
 
   /// Forgets what the topic has not said again since that word.
   void forgetBefore(std::size_t topic, std::uint64_t word);
@@ -71,9 +74,9 @@ class BoxTracker {
  private:
   struct Topic {
     TopicState state;
-    std::string refusal;      ///< of its last message; empty if that was accepted
-    std::string heard_type;   ///< of that message
-    std::size_t unheard = 0;  ///< publishers that cannot be heard
+    std::string refusal;                ///< of its last message; empty if that was accepted
+    const BoxSource* source = nullptr;  ///< of that message
+    std::size_t unheard = 0;            ///< publishers that cannot be heard
     std::string latest_type;  ///< of the publisher that came last, if some cannot be heard
   };
 

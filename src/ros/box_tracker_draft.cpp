@@ -100,8 +100,8 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
 
 std::string BoxTracker::unheardSentence(const Topic& topic) {
   const std::string& name = topic.state.parameters.topic;
-  if (!topic.heard_type.empty() && topic.latest_type != topic.heard_type) {
-    return "Topic " + name + " has publishers of two types, " + topic.heard_type + " and " +
+  if (topic.source && topic.latest_type != topic.source->type) {
+    return "Topic " + name + " has publishers of two types, " + topic.source->type + " and " +
            topic.latest_type + ": the latter cannot be heard; give each type a topic of its own.";
   }
   return std::to_string(topic.unheard) + " of the publishers of topic " + name +

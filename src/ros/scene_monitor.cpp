@@ -149,8 +149,10 @@ void SceneMonitor::Impl::stop() {
 void SceneMonitor::Impl::checkPublishers() {
   topics.checkPublishers(
       [this](std::size_t topic, std::size_t publishers, const std::string& type) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        tracker.setUnheard(topic, publishers, type);
+        std::unique_lock<std::mutex> lock(mutex);
+        const std::string warning = tracker.setUnheard(topic, publishers, type);
+        lock.unlock();
+        ROS_WARN_STREAM_COND(!warning.empty(), "box_query: " << warning);
       });
 }
 
@@ -175,18 +177,23 @@ void SceneMonitor::Impl::forgetFormerPublishers() {
 
 void SceneMonitor::Impl::receive(std::size_t topic, AnyBoxMessage& message) {
   const std::string problem = message.decoded.problem;
+  const BoxSource* former = nullptr;
   {
     const std::lock_guard<std::mutex> lock(mutex);
     noticeTime();
+    former = tracker.lastSource(topic);
     successions[topic].hear(message.connection, tracker.lastWord(), Clock::now());
     tracker.receive(topic, message.source, std::move(message.decoded), now);
     tf_wanted = tracker.isWaiting();
   }
   bell.ring();
+  const std::string& name = parameters.box_topics[topic].topic;
   if (!problem.empty()) {
-    ROS_WARN_STREAM_THROTTLE(5.0, "box_query: a message on topic "
-                                      << parameters.box_topics[topic].topic
-                                      << " was refused: " << problem);
+    ROS_WARN_STREAM_THROTTLE(
+        5.0, "box_query: a message on topic " << name << " was refused: " << problem);
+  } else if (former && message.source != former) {
+    ROS_WARN_STREAM("box_query: topic " << name << " has changed its type from " << former->type
+                                        << " to " << message.source->type);
   }
 }
 

@@ -115,6 +115,49 @@ TEST_F(MonitorOfOneTopic, ForgetsNothingWhileAnotherPublisherIsThere) {
   EXPECT_EQ(monitor_->statistics().dropped_boxes, 0U);
 }
 
+TEST_F(MonitorOfOneTopic, HearsAPublisherThatComesBackWithAnotherType) {
+  listen();
+  for (const int signal : {SIGINT, SIGKILL}) {
+    Speaker before(topic_, "changed", "MarkerArray", 1, {1, 2});
+    ASSERT_TRUE(holds("1:1 2:1 ")) << "by signal " << signal;
+    before.end(signal);
+    Speaker after(topic_, "changed", "Marker", 2, {2});
+    ASSERT_TRUE(holds("2:2 ")) << "by signal " << signal << ": "
+                               << completenessOf(*monitor_).reason;
+    EXPECT_TRUE(becomes(true)) << completenessOf(*monitor_).reason;
+    after.end(signal);
+  }
+}
+
+TEST_F(MonitorOfOneTopic, NamesBothTypesOfATopicAndHearsTheSecondOnceTheFirstIsGone) {
+  listen();
+  Speaker first(topic_, "first", "MarkerArray", 1, {1});
+  ASSERT_TRUE(holds("1:1 "));
+  ASSERT_TRUE(becomes(true));
+  Speaker second(topic_, "second", "Marker", 2, {2});
+  ASSERT_TRUE(becomes(false));
+  EXPECT_EQ(completenessOf(*monitor_).reason,
+            "Topic " + topic_ +
+                " has publishers of two types, visualization_msgs/MarkerArray and "
+                "visualization_msgs/Marker: the latter cannot be heard; give each type a topic of "
+                "its own.");
+  EXPECT_EQ(contents(*monitor_->currentScene()), "1:1 ");
+  first.end(SIGINT);
+  ASSERT_TRUE(holds("2:2 ")) << completenessOf(*monitor_).reason;
+  EXPECT_TRUE(becomes(true)) << completenessOf(*monitor_).reason;
+}
+
+TEST_F(MonitorOfOneTopic, HearsBoxesOnceAPublisherOfAnUnknownTypeIsGone) {
+  listen();
+  Speaker stranger(topic_, "stranger", "String", 0, {});
+  ASSERT_TRUE(eventually([&] { return monitor_->statistics().unknown_type_messages == 1; }));
+  Speaker boxes(topic_, "boxes", "MarkerArray", 1, {1});
+  expectReason({topic_, "std_msgs/String"});
+  stranger.end(SIGINT);
+  ASSERT_TRUE(holds("1:1 ")) << completenessOf(*monitor_).reason;
+  EXPECT_TRUE(becomes(true)) << completenessOf(*monitor_).reason;
+}
+
 }  // namespace
 }  // namespace box_query
 
