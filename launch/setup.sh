@@ -24,7 +24,7 @@ bq_packages() {
     debian/demo) echo python3-roslaunch python3-rosservice python3-rospy python3-std-msgs \
       python3-geometry-msgs python3-visualization-msgs tf2-tools ;;
     debian/viewer) echo rviz ;;
-    debian/test) echo librostest-dev python3-rostest libnodeletlib-tools ;;
+    debian/test) echo librostest-dev python3-rosbag python3-rostest libnodeletlib-tools ;;
     debian/checks) echo catkin-lint clang-format ;;
     noetic/build) echo ros-noetic-catkin ros-noetic-roscpp ros-noetic-tf2 ros-noetic-tf2-ros \
       ros-noetic-std-msgs ros-noetic-geometry-msgs ros-noetic-visualization-msgs \
@@ -32,7 +32,7 @@ bq_packages() {
       ros-noetic-diagnostic-msgs ros-noetic-diagnostic-updater ;;
     noetic/demo) echo ros-noetic-roslaunch ros-noetic-rosservice ros-noetic-rospy ;;
     noetic/viewer) echo ros-noetic-rviz ;;
-    noetic/test) echo ros-noetic-rostest ;;
+    noetic/test) echo ros-noetic-rosbag ros-noetic-rostest ;;
     noetic/checks) echo python3-catkin-lint clang-format ;;
   esac
 }
