@@ -2,6 +2,8 @@
 // Simulated time that stands still, runs, and goes back. The test is the clock.
 #include "rostest/monitor_fixture.h"
 
+#include <atomic>
+
 #include <ros/init.h>
 #include <rosgraph_msgs/Clock.h>
 
@@ -179,6 +181,29 @@ TEST_F(SceneMonitorClock, ForgetsWhatItKnewWhenTimeGoesBack) {
   ASSERT_TRUE(hasBoxes(*monitor_, 1));
   EXPECT_EQ(boxOf(*monitor_->currentScene(), 0).center, Vector3(9.0, 0.0, 0.0));
   EXPECT_TRUE(completenessOf(*monitor_).complete);
+}
+
+TEST_F(SceneMonitorClock, NoticesThatTimeGoesBackWhileNobodyAsks) {
+  setTime(600.0);
+  start();
+  Talker<tf2_msgs::TFMessage> tf("/tf");
+  ASSERT_TRUE(tf.isHeard());
+  Marker waiting = cube("slow", 2, 2.0);
+  waiting.header.stamp = ros::Time(600);
+  say({cube("map", 1, 1.0), waiting});
+  ASSERT_TRUE(hasBoxes(*monitor_, 1));
+  ASSERT_EQ(monitor_->currentScene()->topics[0].waiting, 1U);
+  std::atomic<int> boxes{-1};
+  monitor_->setChangedCallback(
+      [&] { boxes = static_cast<int>(monitor_->currentScene()->scene.size()); });
+  setTime(599.0);
+  EXPECT_TRUE(eventually([&] { return boxes == 0; })) << "and then the clock stands";
+  tf.say(transform("map", "slow", ros::Time(600), 1.0));
+  say({cube("map", 3, 3.0)});
+  EXPECT_TRUE(eventually([&] { return boxes == 1; }));
+  EXPECT_EQ(contents(*monitor_->currentScene()), "3:3 ") << "what waited is forgotten too";
+  EXPECT_TRUE(completenessOf(*monitor_).complete);
+  monitor_->setChangedCallback(nullptr);
 }
 
 }  // namespace

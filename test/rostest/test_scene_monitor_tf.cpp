@@ -145,6 +145,35 @@ TEST_F(SceneMonitorTf, ShowsAnEarlierWordWhileEveryTransformIsLate) {
   EXPECT_TRUE(isAt(0, Vector3(19.0, 0.0, 0.0)));
 }
 
+TEST_F(SceneMonitorTf, PlacesBoxesThatWaitedInTheOrderInWhichTheyWereSaid) {
+  start();
+  const ros::Time stamp(10);
+  // Of the order of frames and stamps the last word is neither the first nor the last.
+  say({at(cube("o_c", 1, 1.0), ros::Time(11)), at(cube("o_a", 1, 2.0), stamp),
+       at(cube("o_b", 1, 3.0), stamp), at(cube("o_a", 2, 4.0), stamp),
+       withAction(cube("", 2, 0.0), Marker::DELETE), at(cube("o_c", 3, 5.0), ros::Time(11))});
+  ASSERT_TRUE(eventually([&] { return monitor_->currentScene()->topics[0].waiting == 2; }));
+  tf2_msgs::TFMessage all;
+  for (const char* frame : {"o_a", "o_b", "o_c"}) {
+    for (const int second : {9, 12}) {
+      all.transforms.push_back(
+          transform("map", frame, ros::Time(second), 100.0).transforms.front());
+    }
+  }
+  tf_->say(all);
+  ASSERT_TRUE(holds("1:103 3:105 "));
+  EXPECT_TRUE(becomes(true));
+
+  say({at(cube("o_d", 1, 1.0), stamp), at(cube("o_e", 1, 2.0), stamp)});
+  ASSERT_TRUE(becomes(false));
+  move("o_e", stamp, 200.0);
+  ASSERT_TRUE(holds("1:202 3:105 "));
+  EXPECT_TRUE(becomes(true)) << "nothing later waits";
+  move("o_d", stamp, 300.0);
+  say({cube("map", 4, 4.0)});
+  EXPECT_TRUE(holds("1:202 3:105 4:4 ")) << "the earlier word came too late";
+}
+
 TEST_F(SceneMonitorTf, DropsWaitingBoxesThatAreDeleted) {
   start();
   say({at(cube("slow", 1, 1.0), ros::Time(10))});
