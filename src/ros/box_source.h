@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,12 +46,16 @@ inline bool isNearUnit(const Quaternion& q) {
 /// Most markers are one box.
 using IdentifiedBoxes = boost::container::small_vector<IdentifiedBox, 1>;
 
+struct RigidObject;
+
 /// A change of what a topic says under one (ns, id): one marker, say.
 struct BoxChange {
   enum class Kind {
     kSet,     ///< from now on these boxes, and no others
     kAppend,  ///< these boxes beside those under its ns: `id` is set, and is added to theirs times
               ///< 2^32, when it is heard
+    kMove,  ///< what is under its ns, elsewhere: `boxes` are its pose and, if there are more, those
+            ///< of its shapes within it
     kRemove,  ///< nothing
     kClear,   ///< nothing under any (ns, id) of the topic
   };
@@ -68,6 +73,7 @@ struct BoxChange {
   std::int64_t lifetime = 0;  ///< [ns] of ROS time from receipt; 0: forever
   bool frame_locked = false;  ///< the boxes move with their frame after `stamp`
   IdentifiedBoxes boxes;
+  std::shared_ptr<const RigidObject> object;  ///< kSet, kAppend: not null if it can be moved
   std::array<std::uint32_t, kRejections> rejections{};  ///< boxes that were not accepted
   std::string problem;                                  ///< what was wrong with the first of them
 

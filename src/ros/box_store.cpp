@@ -46,6 +46,9 @@ Word BoxStore::hear(std::size_t topic_index, BoxChange&& change, const ros::Time
   item.latest_word = word.number;
   item.latest_expiry = word.expiry;
   item.problem = word.change.problem;
+  if (word.change.object) {
+    item.object = word.change.object;
+  }
   setMissing(topic, item, word.change.boxes.size(), word.change.rejected());
   next_expiry_ = std::min(next_expiry_, word.expiry);
   return word;

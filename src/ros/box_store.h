@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -42,9 +43,10 @@ struct Item {
   std::int64_t placed_expiry = kForever;
 
   // Of the latest word.
-  std::size_t waiting = 0;   ///< boxes that wait for their transform
-  std::size_t rejected = 0;  ///< boxes that were rejected or given up
-  std::string problem;       ///< of the rejected ones
+  std::size_t waiting = 0;                    ///< boxes that wait for their transform
+  std::size_t rejected = 0;                   ///< boxes that were rejected or given up
+  std::string problem;                        ///< of the rejected ones
+  std::shared_ptr<const RigidObject> object;  ///< of the latest word that had a box; null: none
 
   // Of the placed word.
   std::string label;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/box_tracker.h"
 
+#include "ros/rigid_object.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -21,6 +23,22 @@ void number(BoxChange& change, std::int64_t id) {
   change.id = id;
   for (IdentifiedBox& box : change.boxes) {
     box.id += id * (std::int64_t{1} << 32);
+  }
+}
+
+/// Rejects a move of what consists of so many changes and shapes, if it does not fit.
+void checkMove(BoxChange& move, std::size_t changes, std::size_t shapes) {
+  if (move.rejected() > 0) {
+    return;
+  }
+  const std::size_t moved = move.boxes.size() - 1;
+  if (changes == 0) {
+    move.reject(Rejection::kAction, 1, "MOVE, but nothing is known of it: add it first", move.id);
+  } else if (moved > 0 && moved != shapes) {
+    move.reject(
+        Rejection::kAction, 1,
+        "MOVE of " + std::to_string(moved) + " shapes, but it has " + std::to_string(shapes),
+        move.id);
   }
 }
 
@@ -108,26 +126,61 @@ void BoxTracker::apply(std::size_t topic, BoxChange&& change, bool whole, const 
       store_.remove(topic, change.ns, change.id);
     }
     noteStamp(change.stamp, now);
+  } else if (change.kind == BoxChange::Kind::kMove) {
+    move(topic, std::move(change), now);
   } else {
     if (change.kind == BoxChange::Kind::kAppend) {
       number(change, store_.nextId(topic, change.ns));
     }
-    const std::size_t rejected = change.rejected();
-    counts_.boxes += change.boxes.size() + rejected;
-    counts_.rejected_boxes += rejected;
-    for (std::size_t why = 0; rejected > 0 && why < kRejections; ++why) {
-      if (change.rejections[why] > 0) {
-        counts_.rejections[rejectionNames()[why]] += change.rejections[why];
+    hear(topic, std::move(change), whole, now);
+  }
+}
+
+/// All that was added and appended to an object moves, or nothing.
+void BoxTracker::move(std::size_t topic, BoxChange&& change, const ros::Time& now) {
+  std::vector<std::pair<std::int64_t, std::shared_ptr<const RigidObject>>> objects;
+  std::size_t shapes = 0;
+  const auto items = store_.items(topic).find(change.ns);
+  if (items != store_.items(topic).end()) {
+    for (const auto& [id, item] : items->second) {
+      if (item.object) {
+        objects.emplace_back(id, item.object);
+        shapes += item.object->shapes;
       }
     }
-    Word word = store_.hear(topic, std::move(change), now);
-    // A marker that is bad leaves what it said before in place; a whole set does not.
-    if (!word.change.boxes.empty() || rejected == 0 || whole) {
-      if (word.change.kind == BoxChange::Kind::kSet && word.change.whole_namespace) {
-        store_.forgetBefore(topic, word.change.ns, word.number - 1);
-      }
-      place(std::move(word));
+  }
+  checkMove(change, objects.size(), shapes);
+  if (change.rejected() > 0) {
+    change.kind = BoxChange::Kind::kSet;
+    change.boxes.clear();
+    hear(topic, std::move(change), false, now);
+    return;
+  }
+  std::size_t first_shape = 0;
+  for (const auto& [id, object] : objects) {
+    BoxChange one = moved(object, change, first_shape);
+    number(one, id);
+    first_shape += object->shapes;
+    hear(topic, std::move(one), false, now);
+  }
+}
+
+void BoxTracker::hear(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now) {
+  const std::size_t rejected = change.rejected();
+  counts_.boxes += change.boxes.size() + rejected;
+  counts_.rejected_boxes += rejected;
+  for (std::size_t why = 0; rejected > 0 && why < kRejections; ++why) {
+    if (change.rejections[why] > 0) {
+      counts_.rejections[rejectionNames()[why]] += change.rejections[why];
     }
+  }
+  Word word = store_.hear(topic, std::move(change), now);
+  // A marker that is bad leaves what it said before in place; a whole set does not.
+  if (!word.change.boxes.empty() || rejected == 0 || whole) {
+    if (word.change.kind == BoxChange::Kind::kSet && word.change.whole_namespace) {
+      store_.forgetBefore(topic, word.change.ns, word.number - 1);
+    }
+    place(std::move(word));
   }
 }
 

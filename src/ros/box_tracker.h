@@ -82,6 +82,8 @@ class BoxTracker {
 
   void dropIfStale(std::size_t topic, const ros::Time& now);
   void apply(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now);
+  void hear(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now);
+  void move(std::size_t topic, BoxChange&& change, const ros::Time& now);
   void place(Word&& word);
   void placeAt(const FramePose& pose, Word&& word);
   /// Rejects the boxes of a word whose transform overflowed.

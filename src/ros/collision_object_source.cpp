@@ -3,13 +3,19 @@
 // change of one object. The object's id is the namespace, the n-th primitive has the id n (those
 // appended later n + k * 2^32), and the key of the type is the label. A primitive's pose is
 // relative to the object's; both are the identity where they are not given. REMOVE without an id
-// removes all. What differs: solids other than boxes, meshes and planes are ignored and counted,
-// and MOVE, which has no geometry of its own, is rejected by name.
+// removes all. MOVE gives the object another pose, and where it lists poses of all shapes, of
+// primitives, meshes and planes in this order, those too. What differs: solids other than boxes,
+// meshes and planes are ignored and counted, and what is appended is placed by the pose that comes
+// with it.
 #include "ros/box_source.h"
 #include "ros/foreign_fields.h"
+#include "ros/rigid_object.h"
 
 #include <algorithm>
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace box_query {
 namespace {
@@ -28,11 +34,6 @@ constexpr std::size_t kTriangleSize = 3 * sizeof(std::uint32_t);
 constexpr std::size_t kPointSize = 3 * sizeof(double);
 constexpr std::size_t kPlaneSize = 4 * sizeof(double);
 
-struct Pose {
-  Vector3 position = Vector3::Zero();
-  Quaternion orientation = Quaternion::Identity();
-};
-
 Pose readPose(WireReader& reader) {
   Pose pose;
   pose.position = reader.vector();
@@ -43,35 +44,39 @@ Pose readPose(WireReader& reader) {
   return pose;
 }
 
-/// A pose that is given in `parent`. An identity leaves it as it is, to the last bit.
-Pose placed(const Pose& parent, const Pose& pose) {
-  if (parent.orientation.coeffs() == Quaternion::Identity().coeffs()) {
-    return {parent.position + pose.position, pose.orientation};
-  }
-  const Eigen::Matrix3d rotation = parent.orientation.normalized().toRotationMatrix();
-  return {parent.position + rotation * pose.position, parent.orientation * pose.orientation};
-}
+/// What stands at the same places in every object, whatever its operation.
+struct Fields {
+  Pose pose;
+  std::uint32_t primitives = 0;
+  std::uint32_t others = 0;  ///< meshes and planes
+  std::vector<WireReader>
+      shape_poses;  ///< each at an array of poses: of primitives, meshes, planes
+  std::shared_ptr<RigidObject> object = std::make_shared<RigidObject>();
+};
 
 /// Reads the primitives and their poses. The boxes among them come before their poses: a second
-/// reader goes along. @return the number of primitives
-std::uint32_t readPrimitives(WireReader& reader, const Pose& object, std::size_t max_boxes,
-                             BoxChange& change, DecodedMessage& message) {
-  const std::uint32_t primitives = reader.count(SolidPrimitive::kSmallest);
+/// reader goes along.
+void readPrimitives(WireReader& reader, std::size_t max_boxes, Fields& fields, BoxChange& change,
+                    DecodedMessage& message) {
+  fields.primitives = reader.count(SolidPrimitive::kSmallest);
   WireReader solids = reader;
-  for (std::uint32_t n = 0; n < primitives && reader.ok(); ++n) {
+  for (std::uint32_t n = 0; n < fields.primitives && reader.ok(); ++n) {
     readSolidPrimitive(reader);
   }
-  if (primitives > max_boxes) {
+  if (fields.primitives > max_boxes) {
     message.problem = tooManyBoxes(max_boxes);
-    return primitives;
+    return;
   }
+  fields.shape_poses.push_back(reader);
   const std::uint32_t poses = reader.count(kPoseSize);
-  for (std::uint32_t n = 0; n < std::max(primitives, poses) && reader.ok(); ++n) {
-    const Pose pose = placed(object, n < poses ? readPose(reader) : Pose());
-    if (n >= primitives) {
+  for (std::uint32_t n = 0; n < std::max(fields.primitives, poses) && reader.ok(); ++n) {
+    const Pose in_object = n < poses ? readPose(reader) : Pose();
+    if (n >= fields.primitives) {
       continue;  // a pose too many
     }
     const SolidPrimitive solid = readSolidPrimitive(solids);
+    const Pose pose = placed(fields.pose, in_object);
+    const std::size_t accepted = change.boxes.size();
     if (solid.type != SolidPrimitive::kBox) {
       ++message.ignored;
     } else if (solid.dimensions != 3) {
@@ -79,22 +84,26 @@ std::uint32_t readPrimitives(WireReader& reader, const Pose& object, std::size_t
     } else {
       change.add(n, pose.position, pose.orientation, solid.sides);
     }
+    if (change.boxes.size() > accepted) {
+      fields.object->boxes.emplace_back(n, in_object.position, in_object.orientation,
+                                        change.boxes.back().box.half_extents);
+    }
   }
-  return primitives;
 }
 
-/// @return the number of meshes and planes
-std::uint32_t skipMeshesAndPlanes(WireReader& reader) {
+void skipMeshesAndPlanes(WireReader& reader, Fields& fields) {
   const std::uint32_t meshes = reader.count(kMeshSize);
   for (std::uint32_t n = 0; n < meshes && reader.ok(); ++n) {
     skipArray(reader, kTriangleSize);
     skipArray(reader, kPointSize);
   }
+  fields.shape_poses.push_back(reader);
   skipArray(reader, kPoseSize);
   const std::uint32_t planes = reader.count(kPlaneSize);
   reader.skip(std::uint64_t{planes} * kPlaneSize);
+  fields.shape_poses.push_back(reader);
   skipArray(reader, kPoseSize);
-  return meshes + planes;
+  fields.others = meshes + planes;
 }
 
 void skipSubframes(WireReader& reader) {
@@ -105,27 +114,76 @@ void skipSubframes(WireReader& reader) {
   skipArray(reader, kPoseSize);
 }
 
-/// Makes the change what the operation means.
-void apply(std::int8_t operation, bool has_geometry, BoxChange& change) {
-  if (operation == kRemove) {
-    change.kind = change.ns.empty() ? BoxChange::Kind::kClear : BoxChange::Kind::kRemove;
-    return;
+/// Keeps what a later MOVE moves.
+void keep(Fields&& fields, BoxChange& change) {
+  RigidObject& object = *fields.object;
+  object.shapes = fields.primitives + fields.others;
+  object.label = change.label;
+  object.rejections = change.rejections;
+  object.problem = change.problem;
+  const bool is_placed = fields.pose.position != Vector3::Zero() ||
+                         fields.pose.orientation.coeffs() != Quaternion::Identity().coeffs();
+  if (object.shapes == 1 && !is_placed) {  // MoveIt: the pose of the one shape is the object's
+    for (IdentifiedBox& box : object.boxes) {
+      box.box.center.setZero();
+      box.box.orientation.setIdentity();
+    }
   }
-  if (operation == kAppend) {
-    change.kind = BoxChange::Kind::kAppend;
-  }
-  if (operation == kMove) {
-    change.reject(Rejection::kAction, 1, "MOVE: add it again where it is now", change.id);
-  } else if (operation != kAdd && operation != kAppend) {
-    change.reject(Rejection::kAction, 1, std::to_string(operation), change.id);
-  } else if (!has_geometry) {
+  change.object = std::move(fields.object);
+}
+
+void add(Fields&& fields, BoxChange& change) {
+  if (fields.primitives + fields.others == 0) {
     change.reject(Rejection::kShape, 1, "it has no geometry", change.id);
   } else if (isBadFrame(change.frame)) {
     change.reject(Rejection::kFrame, change.boxes.size(), "'" + change.frame + "'", change.id);
-  } else {
-    return;
+    change.boxes.clear();
+  } else if (!change.boxes.empty() || change.rejected() == 0) {
+    keep(std::move(fields), change);
   }
-  change.boxes.clear();
+}
+
+/// Its own shapes mean nothing.
+void move(Fields&& fields, BoxChange& change) {
+  BoxChange move;
+  move.kind = BoxChange::Kind::kMove;
+  move.ns = change.ns;
+  move.frame = change.frame;
+  move.stamp = change.stamp;
+  move.add(0, fields.pose.position, fields.pose.orientation, Vector3::Zero());
+  for (WireReader& reader : fields.shape_poses) {
+    const std::uint32_t poses = reader.count(kPoseSize);
+    for (std::uint32_t n = 0; n < poses; ++n) {
+      const Pose pose = readPose(reader);
+      move.add(n, pose.position, pose.orientation, Vector3::Zero());
+    }
+  }
+  if (isBadFrame(move.frame)) {
+    move.reject(Rejection::kFrame, 1, "'" + move.frame + "'", 0);
+  }
+  change = std::move(move);
+}
+
+/// Makes the change what the operation means.
+void apply(std::int8_t operation, Fields&& fields, BoxChange& change) {
+  switch (operation) {
+    case kAppend:
+      change.kind = BoxChange::Kind::kAppend;
+      add(std::move(fields), change);
+      break;
+    case kAdd:
+      add(std::move(fields), change);
+      break;
+    case kRemove:
+      change.kind = change.ns.empty() ? BoxChange::Kind::kClear : BoxChange::Kind::kRemove;
+      break;
+    case kMove:
+      move(std::move(fields), change);
+      break;
+    default:
+      change.reject(Rejection::kAction, 1, std::to_string(operation), change.id);
+      change.boxes.clear();
+  }
 }
 
 }  // namespace
@@ -136,19 +194,21 @@ void decodeCollisionObject(WireReader& reader, std::size_t max_boxes, DecodedMes
   const WireHeader header = reader.header();
   change.stamp = header.stamp;
   change.frame = stripSlash(header.frame);
-  const Pose pose = readPose(reader);
+  Fields fields;
+  fields.pose = readPose(reader);
   change.ns = reader.string();
   change.label = reader.string();  // type.key
   reader.string();                 // type.db
-  const std::uint32_t primitives = readPrimitives(reader, pose, max_boxes, change, message);
+  readPrimitives(reader, max_boxes, fields, change, message);
   if (!message.problem.empty()) {
     return;
   }
-  const std::uint32_t others = skipMeshesAndPlanes(reader);
+  skipMeshesAndPlanes(reader, fields);
   skipSubframes(reader);
   const auto operation = reader.number<std::int8_t>();
-  message.ignored = operation == kAdd || operation == kAppend ? message.ignored + others : 0;
-  apply(operation, primitives > 0 || others > 0, change);
+  const bool has_shapes = operation == kAdd || operation == kAppend;
+  message.ignored = has_shapes ? message.ignored + fields.others : 0;
+  apply(operation, std::move(fields), change);
 }
 
 }  // namespace box_query

@@ -117,14 +117,15 @@ TEST(CollisionObjectSource, TellsOperationsApart) {
   EXPECT_EQ(decode(object("shelf", {1}, kAppend)).changes.at(0).kind, BoxChange::Kind::kAppend);
   EXPECT_EQ(decode(object("shelf", {}, kRemove)).changes.at(0).kind, BoxChange::Kind::kRemove);
   EXPECT_EQ(decode(object("", {}, kRemove)).changes.at(0).kind, BoxChange::Kind::kClear);
-  for (const Operation bad : {kMove, Operation(4), Operation(-1)}) {
+  for (const Operation bad : {Operation(4), Operation(-1)}) {
     const BoxChange change = decode(object("shelf", {1}, bad)).changes.at(0);
     EXPECT_EQ(change.kind, BoxChange::Kind::kSet);
     EXPECT_TRUE(change.boxes.empty());
     EXPECT_EQ(countOf(change, Rejection::kAction), 1U);
   }
-  const std::string problem = decode(object("shelf", {}, kMove)).changes.at(0).problem;
-  EXPECT_NE(problem.find("MOVE: add it again"), std::string::npos) << problem;
+  const BoxChange move = decode(object("shelf", {1, 2}, kMove)).changes.at(0);
+  EXPECT_EQ(move.kind, BoxChange::Kind::kMove);
+  EXPECT_EQ(move.boxes.size(), 3U) << "the pose of the object, and of two shapes";
 }
 
 TEST(CollisionObjectSource, RejectsBadBoxesAndKeepsTheRest) {
@@ -155,7 +156,10 @@ TEST(CollisionObjectSource, RefusesMessagesWithTooManyBoxes) {
   EXPECT_NE(message.problem.find("max_boxes_per_message"), std::string::npos) << message.problem;
 }
 
-TEST(CollisionObjectSource, SurvivesDamage) {
+class DamagedCollisionObject : public testing::TestWithParam<Operation> {};
+INSTANTIATE_TEST_SUITE_P(Operations, DamagedCollisionObject, testing::Values(kAdd, kMove));
+
+TEST_P(DamagedCollisionObject, IsSurvived) {
   CollisionObject full = object("shelf", {1, 2});
   full.meshes.resize(2);
   full.meshes[0].triangles.resize(1);
@@ -165,6 +169,7 @@ TEST(CollisionObjectSource, SurvivesDamage) {
   full.plane_poses.resize(1);
   full.subframe_names = {"handle", ""};
   full.subframe_poses.resize(1);
+  full.operation = GetParam();
   const Bytes whole = wire(full);
   expectRefusedIfCutOffOrTooLong(kType, whole);
   // Frame, stamp, id, type, primitives, meshes, planes, their poses, subframes.
@@ -209,9 +214,69 @@ TEST(CollisionObjects, AreReplacedAppendedAndRemovedOneByOne) {
 TEST(CollisionObjects, StayAsTheyWereIfAChangeIsRejected) {
   const CollisionObject shelf = object("shelf", {1, 2});
   const CollisionObject more = object("shelf", {3}, kAppend);
-  const CollisionObject move = object("shelf", {}, kMove);
-  EXPECT_EQ(after({shelf, more, move}), "shelf/0:1 shelf/1:2 shelf/4294967296:3 rejected 1");
-  EXPECT_EQ(after({shelf, more, move, shelf}), "shelf/0:1 shelf/1:2 ");
+  const CollisionObject odd = object("shelf", {}, Operation(4));
+  EXPECT_EQ(after({shelf, more, odd}), "shelf/0:1 shelf/1:2 shelf/4294967296:3 rejected 1");
+  EXPECT_EQ(after({shelf, more, odd, shelf}), "shelf/0:1 shelf/1:2 ");
+}
+
+CollisionObject moveTo(const std::string& id, const geometry_msgs::Pose& pose,
+                       const std::vector<double>& shapes = {}) {
+  CollisionObject message = object(id, shapes, kMove);
+  message.primitives.clear();
+  message.pose = pose;
+  return message;
+}
+
+TEST(CollisionObjects, MoveAsOne) {
+  CollisionObject shelf = object("shelf", {1, 2});
+  shelf.pose = poseAt(10.0);
+  const CollisionObject table = object("table", {5});
+  const CollisionObject more = object("shelf", {3, 4}, kAppend);
+  EXPECT_EQ(after({shelf, table, moveTo("shelf", poseAt(20.0))}),
+            "shelf/0:21 shelf/1:22 table/0:5 ");
+  const std::string moved = "shelf/0:-19 shelf/1:-18 shelf/4294967296:-17 shelf/4294967297:-16 ";
+  EXPECT_EQ(after({shelf, more, moveTo("shelf", poseAt(20.0)), moveTo("shelf", poseAt(-20.0))}),
+            moved)
+      << "from where its shapes are within it, whatever came in between";
+  EXPECT_EQ(after({shelf, moveTo("shelf", poseAt(-17.0, M_PI))}), "shelf/0:-18 shelf/1:-19 ");
+  EXPECT_EQ(after({shelf, moveTo("shelf", poseAt(20.0)), more, object("shelf", {7})}),
+            "shelf/0:7 ");
+}
+
+TEST(CollisionObjects, MoveByThePosesOfTheirShapes) {
+  CollisionObject shelf = object("shelf", {1, 2, 3});
+  shelf.primitives[1] = solid(2, {1.0});  // a sphere
+  const CollisionObject more = object("shelf", {4}, kAppend);
+  const CollisionObject move = moveTo("shelf", poseAt(100.0), {10, 20, 30, 40});
+  EXPECT_EQ(after({shelf, more, move}), "shelf/0:110 shelf/2:130 shelf/4294967296:140 ");
+  EXPECT_EQ(after({shelf, more, move, moveTo("shelf", poseAt(0.0))}),
+            "shelf/0:10 shelf/2:30 shelf/4294967296:40 ")
+      << "they keep these poses";
+  EXPECT_EQ(after({shelf, more, moveTo("shelf", poseAt(0.0), {10, 20, 30})}),
+            "shelf/0:1 shelf/2:3 shelf/4294967296:4 rejected 1");
+}
+
+TEST(CollisionObjects, OfOneShapeMoveToThePoseOfIt) {
+  EXPECT_EQ(after({object("crate", {5}), moveTo("crate", poseAt(7.0))}), "crate/0:7 ");
+  CollisionObject crate = object("crate", {5});
+  crate.pose = poseAt(1.0);
+  EXPECT_EQ(after({crate, moveTo("crate", poseAt(7.0))}), "crate/0:12 ") << "the pose was given";
+}
+
+TEST(CollisionObjects, StayWhereTheyAreIfAMoveIsBad) {
+  const CollisionObject shelf = object("shelf", {1, 2});
+  geometry_msgs::Pose bad = poseAt(5.0);
+  bad.orientation.w = 0.5;
+  EXPECT_EQ(after({shelf, moveTo("shelf", bad)}), "shelf/0:1 shelf/1:2 rejected 1");
+  EXPECT_EQ(after({shelf, moveTo("shelf", bad), moveTo("shelf", poseAt(5.0))}),
+            "shelf/0:6 shelf/1:7 ");
+  EXPECT_EQ(after({moveTo("shelf", poseAt(5.0))}), "rejected 1") << "not known";
+  EXPECT_EQ(after({shelf, object("shelf", {}, kRemove), moveTo("shelf", poseAt(5.0))}),
+            "rejected 1");
+  CollisionObject half = object("shelf", {1, 2});
+  half.primitives[0].dimensions.pop_back();
+  EXPECT_EQ(after({half, moveTo("shelf", poseAt(5.0))}), "shelf/1:7 rejected 1")
+      << "what was bad does not become good";
 }
 
 }  // namespace

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// Objects that move as one: a message that moves one has no geometry, so that it is kept.
+#pragma once
+
+#include "ros/box_source.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace box_query {
+
+/// X -> orientation X + position.
+struct Pose {
+  Vector3 position = Vector3::Zero();
+  Quaternion orientation = Quaternion::Identity();
+};
+
+/// A pose that is given in `parent`. An identity leaves it as it is, to the last bit.
+Pose placed(const Pose& parent, const Pose& pose);
+
+/// What a kSet or kAppend change says of an object, in the object's own frame.
+struct RigidObject {
+  std::string label;
+  std::vector<IdentifiedBox> boxes;  ///< their ids are their places among the shapes
+  std::size_t shapes = 0;            ///< of any kind
+  std::array<std::uint32_t, kRejections> rejections{};  ///< boxes that cannot be moved either
+  std::string problem;
+};
+
+/// The change that says the same of the object where a kMove change puts it. Of the shapes that the
+/// move counts, those of this object begin at `first_shape`.
+/// @pre move.boxes holds the pose of the object and, unless that is all, of so many shapes.
+BoxChange moved(const std::shared_ptr<const RigidObject>& object, const BoxChange& move,
+                std::size_t first_shape);
+
+}  // namespace box_query
