@@ -77,6 +77,9 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
           continue;
         }
       }
+      if (row.item->placed_word != row.item->latest_word) {
+        draft.snapshot.outdated.push_back(draft.boxes.size());
+      }
       draft.boxes.emplace_back(box);
       draft.snapshot.names.push_back({state.parameters.topic, ns, row.id, row.item->label});
       draft.snapshot.stamps.push_back(row.item->stamp);

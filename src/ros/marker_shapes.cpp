@@ -4,6 +4,9 @@
 #include "ros/conversions.h"
 
 #include <array>
+#include <limits>
+#include <set>
+#include <utility>
 
 namespace box_query {
 namespace {
@@ -14,6 +17,8 @@ constexpr double kEdgeWidth = 0.01;    // [m]
 constexpr double kQueryWidth = 0.015;  // [m]
 constexpr double kPointSize = 0.06;    // [m]
 constexpr double kNormalLength = 0.3;  // [m]
+constexpr double kTextHeight = 0.15;   // [m]
+constexpr double kStatusHeight = 1.0;  // [m] above the origin
 
 std_msgs::ColorRGBA color(float r, float g, float b, float a) {
   std_msgs::ColorRGBA rgba;
@@ -50,11 +55,11 @@ std_msgs::ColorRGBA outcomeColor(Outcome outcome) {
 }
 
 /// Without a stamp: rviz places it by the latest transform.
-Marker marker(const std::string& frame, const std::string& ns, std::int32_t id, int type) {
+Marker marker(const std::string& frame, const MarkerName& name, int type) {
   Marker m;
   m.header.frame_id = frame;
-  m.ns = ns;
-  m.id = id;
+  m.ns = name.ns;
+  m.id = name.id;
   m.type = type;
   m.pose.orientation.w = 1;
   m.scale.x = m.scale.y = m.scale.z = 1;
@@ -116,6 +121,47 @@ void appendEdges(const Corners& corners, std::vector<geometry_msgs::Point>& poin
   }
 }
 
+/// Faces and edges of boxes, as two lists.
+struct Solids {
+  Solids(const std::string& frame, const MarkerName& faces_name, const MarkerName& edges_name)
+      : faces(marker(frame, faces_name, Marker::TRIANGLE_LIST)),
+        edges(marker(frame, edges_name, Marker::LINE_LIST)) {
+    edges.scale.x = kEdgeWidth;
+  }
+  void reserve(std::size_t boxes) {
+    faces.points.reserve(36 * boxes);
+    edges.points.reserve(24 * boxes);
+  }
+  void add(const Box& box) {
+    appendTriangles(cornersOf(box, 0), faces.points);
+    appendEdges(cornersOf(box, kEdgeWidth / 2), edges.points);
+  }
+  void moveTo(std::vector<Marker>& markers) {
+    if (!faces.points.empty()) {
+      markers.push_back(std::move(faces));
+      markers.push_back(std::move(edges));
+    }
+  }
+
+  Marker faces;
+  Marker edges;
+};
+
+/// The label of a box, above it.
+Marker labelOf(const Snapshot& snapshot, std::size_t box, std::int32_t id) {
+  const BoxName& name = snapshot.names[box];
+  Vector3 low = Vector3::Constant(std::numeric_limits<double>::infinity());
+  Vector3 high = -low;
+  for (const geometry_msgs::Point& corner : cornersOf(snapshot.scene.boxes()[box], 0)) {
+    low = low.cwiseMin(fromMessage(corner));
+    high = high.cwiseMax(fromMessage(corner));
+  }
+  Vector3 at = 0.5 * low + 0.5 * high;
+  at.z() = high.z() + kTextHeight;
+  return textMarker(snapshot.frame, {"labels/" + name.topic, id},
+                    name.label.empty() ? name.ns + "/" + std::to_string(name.id) : name.label, at);
+}
+
 /// Calls `visit(topic, begin, end)` for the range of boxes of every topic that has some.
 template <class Visit>
 void forEachTopic(const Snapshot& snapshot, const Visit& visit) {
@@ -138,51 +184,111 @@ std::size_t indexOfTopic(const Snapshot& snapshot, const std::string& topic) {
 
 }  // namespace
 
-std::vector<Marker> boxMarkers(const Snapshot& snapshot) {
+Marker textMarker(const std::string& frame, const MarkerName& name, const std::string& words,
+                  const Vector3& at) {
+  Marker m = marker(frame, name, Marker::TEXT_VIEW_FACING);
+  m.text = words;
+  m.pose.position = toPoint(at);
+  m.scale.z = kTextHeight;
+  m.color = color(1, 1, 1, 1);
+  return m;
+}
+
+std::string statusText(const Snapshot& snapshot, const ros::Time& now) {
+  std::string text;
+  for (const TopicState& topic : snapshot.topics) {
+    std::string line;
+    const auto add = [&](const std::string& what) { line += (line.empty() ? "" : ", ") + what; };
+    if (!topic.heard && topic.parameters.required) {
+      add("not heard");
+    }
+    if (topic.isStale(now)) {
+      add("stale");
+    }
+    if (topic.waiting > 0) {
+      add(std::to_string(topic.waiting) + " waiting for tf");
+    }
+    if (topic.rejected > 0) {
+      add(std::to_string(topic.rejected) + " rejected");
+    }
+    if (line.empty()) {
+      add(topic.problem);
+    }
+    if (!line.empty()) {
+      text += (text.empty() ? "" : "\n") + topic.parameters.topic + ": " + line;
+    }
+  }
+  return text;
+}
+
+std::vector<Marker> boxMarkers(const Snapshot& snapshot, const ros::Time& now,
+                               std::size_t max_labels) {
   std::vector<Marker> markers;
+  const std::vector<Box>& boxes = snapshot.scene.boxes();
+  auto outdated = snapshot.outdated.begin();
   forEachTopic(snapshot, [&](const std::string& topic, std::size_t begin, std::size_t end) {
     const std::size_t index = indexOfTopic(snapshot, topic);
-    Marker faces = marker(snapshot.frame, "boxes/" + topic, 0, Marker::TRIANGLE_LIST);
-    faces.color = topicColor(index, 0.5F);
-    faces.points.reserve(36 * (end - begin));
-    Marker edges = marker(snapshot.frame, "edges/" + topic, 0, Marker::LINE_LIST);
-    edges.color = topicColor(index, 1);
-    edges.scale.x = kEdgeWidth;
-    edges.points.reserve(24 * (end - begin));
+    const bool is_stale = index < snapshot.topics.size() && snapshot.topics[index].isStale(now);
+    Solids current = is_stale
+                         ? Solids(snapshot.frame, {"stale/" + topic, 0}, {"stale/" + topic, 1})
+                         : Solids(snapshot.frame, {"boxes/" + topic, 0}, {"edges/" + topic, 0});
+    current.faces.color = topicColor(index, is_stale ? 0.1F : 0.5F);
+    current.edges.color = topicColor(index, is_stale ? 0.4F : 1.0F);
+    Solids waiting(snapshot.frame, {"waiting/" + topic, 0}, {"waiting/" + topic, 1});
+    waiting.faces.color = topicColor(index, 0.2F);
+    waiting.edges.color = outcomeColor(Outcome::kUnknown);
+    current.reserve(end - begin);
     for (std::size_t i = begin; i < end; ++i) {
-      appendTriangles(cornersOf(snapshot.scene.boxes()[i], 0), faces.points);
-      appendEdges(cornersOf(snapshot.scene.boxes()[i], kEdgeWidth / 2), edges.points);
+      const bool waits = outdated != snapshot.outdated.end() && *outdated == i;
+      outdated += waits ? 1 : 0;
+      (waits ? waiting : current).add(boxes[i]);
+      if (i < max_labels) {
+        markers.push_back(labelOf(snapshot, i, static_cast<std::int32_t>(i - begin)));
+      }
     }
-    markers.push_back(std::move(faces));
-    markers.push_back(std::move(edges));
+    current.moveTo(markers);
+    waiting.moveTo(markers);
   });
+  const std::string status = statusText(snapshot, now);
+  if (!status.empty()) {
+    markers.push_back(
+        textMarker(snapshot.frame, {"status", 0}, status, Vector3(0, 0, kStatusHeight)));
+    markers.back().color = outcomeColor(Outcome::kUnknown);
+  }
   return markers;
 }
 
-std::vector<Marker> deletedBoxMarkers(const Snapshot& before, const Snapshot& now) {
-  std::vector<Marker> markers;
-  forEachTopic(before, [&](const std::string& topic, std::size_t, std::size_t) {
-    bool is_there = false;
-    forEachTopic(now, [&](const std::string& other, std::size_t, std::size_t) {
-      is_there = is_there || other == topic;
-    });
-    for (const char* kind : {"boxes/", "edges/"}) {
-      if (!is_there) {
-        markers.push_back(marker(before.frame, kind + topic, 0, Marker::CUBE));
-        markers.back().action = Marker::DELETE;
-      }
+std::vector<MarkerName> namesOf(const std::vector<Marker>& markers) {
+  std::vector<MarkerName> names;
+  for (const Marker& m : markers) {
+    names.push_back({m.ns, m.id});
+  }
+  return names;
+}
+
+std::vector<Marker> deletions(const std::vector<MarkerName>& before,
+                              const std::vector<Marker>& markers, const std::string& frame) {
+  std::set<std::pair<std::string, std::int32_t>> there;
+  for (const Marker& m : markers) {
+    there.emplace(m.ns, m.id);
+  }
+  std::vector<Marker> gone;
+  for (const MarkerName& name : before) {
+    if (there.count({name.ns, name.id}) == 0) {
+      gone.push_back(marker(frame, name, Marker::CUBE));
+      gone.back().action = Marker::DELETE;
     }
-  });
-  return markers;
+  }
+  return gone;
 }
 
 std::vector<Marker> queryMarkers(const std::vector<DrawnQuery>& queries, const std::string& frame,
                                  double lifetime, std::int32_t id) {
-  Marker rays = marker(frame, "rays", id, Marker::LINE_LIST);
-  Marker segments = marker(frame, "segments", id, Marker::LINE_LIST);
-  Marker hits = marker(frame, "hits", id, Marker::SPHERE_LIST);
-  Marker normals = marker(frame, "normals", id, Marker::LINE_LIST);
-  Marker closest = marker(frame, "closest_points", id, Marker::LINE_LIST);
+  Marker rays = marker(frame, {"rays", id}, Marker::LINE_LIST);
+  Marker segments = marker(frame, {"segments", id}, Marker::LINE_LIST);
+  Marker hits = marker(frame, {"hits", id}, Marker::SPHERE_LIST);
+  Marker normals = marker(frame, {"normals", id}, Marker::LINE_LIST);
+  Marker closest = marker(frame, {"closest_points", id}, Marker::LINE_LIST);
   rays.scale.x = segments.scale.x = normals.scale.x = closest.scale.x = kQueryWidth;
   hits.scale.x = hits.scale.y = hits.scale.z = kPointSize;
   rays.color = segments.color = color(1, 1, 1, 1);

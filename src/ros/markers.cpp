@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/markers.h"
 
-#include "ros/marker_shapes.h"
-
 #include <algorithm>
 #include <utility>
 
@@ -60,37 +58,55 @@ void Markers::run() {
   }
 }
 
+Markers::Shown Markers::look() const {
+  Shown look{monitor_.watchedScene(), ros::Time::now(), {}, {}};
+  look.status = statusText(*look.scene, look.time);
+  return look;
+}
+
+/// Whether both look alike. Snapshots of the same boxes share them; what is stale is in the status.
+bool Markers::Shown::looksLike(const Shown& other) const {
+  return &scene->scene.boxes() == &other.scene->scene.boxes() &&
+         scene->outdated == other.scene->outdated && status == other.status;
+}
+
+std::vector<visualization_msgs::Marker> Markers::draw(Shown& look) const {
+  const auto labels = static_cast<std::size_t>(monitor_.parameters().max_marker_labels);
+  auto markers = boxMarkers(*look.scene, look.time, labels);
+  look.names = namesOf(markers);
+  return markers;
+}
+
 void Markers::welcome(const ros::SingleSubscriberPublisher& subscriber) {
-  const SnapshotPtr scene = monitor_.watchedScene();
+  Shown now = look();
   visualization_msgs::MarkerArray array;
-  array.markers = boxMarkers(*scene);
+  array.markers = draw(now);
   if (!array.markers.empty()) {
     subscriber.publish(array);
   }
   if (publisher_.getNumSubscribers() == 1) {
-    shown_ = scene;
+    shown_ = std::move(now);
   }
 }
 
 void Markers::publish() {
   visualization_msgs::MarkerArray array;
-  const SnapshotPtr scene = monitor_.watchedScene();
-  // Snapshots of the same boxes share them.
-  if (!shown_ || &scene->scene.boxes() != &shown_->scene.boxes()) {
-    array.markers = boxMarkers(*scene);
+  Shown now = look();
+  if (!shown_ || !now.looksLike(*shown_)) {
+    array.markers = draw(now);
     if (shown_) {
-      const auto deleted = deletedBoxMarkers(*shown_, *scene);
+      const auto deleted = deletions(shown_->names, array.markers, now.scene->frame);
       array.markers.insert(array.markers.end(), deleted.begin(), deleted.end());
     }
-    shown_ = scene;
+    shown_ = std::move(now);
   }
   std::vector<DrawnQuery> queries;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     queries.swap(queries_);
   }
-  const auto drawn =
-      queryMarkers(queries, scene->frame, monitor_.parameters().marker_lifetime, last_id_);
+  const auto drawn = queryMarkers(queries, monitor_.parameters().fixed_frame,
+                                  monitor_.parameters().marker_lifetime, last_id_);
   last_id_ += drawn.empty() ? 0 : 1;
   array.markers.insert(array.markers.end(), drawn.begin(), drawn.end());
   if (!array.markers.empty()) {

@@ -4,11 +4,14 @@
 #pragma once
 
 #include "ros/drawing.h"
+#include "ros/marker_shapes.h"
 
 #include <box_query/ros/scene_monitor.h>
 
 #include <atomic>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -34,7 +37,19 @@ class Markers {
   void show(std::vector<DrawnQuery> queries);
 
  private:
+  /// What subscribers have got of the boxes.
+  struct Shown {
+    bool looksLike(const Shown& other) const;
+
+    SnapshotPtr scene;
+    ros::Time time;
+    std::string status;
+    std::vector<MarkerName> names;
+  };
+
   void run();
+  Shown look() const;
+  std::vector<visualization_msgs::Marker> draw(Shown& look) const;
   void welcome(const ros::SingleSubscriberPublisher& subscriber);
   void publish();
 
@@ -42,7 +57,7 @@ class Markers {
   ros::CallbackQueue queue_;  ///< of the thread: subscribers that come
   ros::Publisher publisher_;
   std::atomic<bool> wanted_{false};
-  SnapshotPtr shown_;  ///< what every subscriber has got; of the thread
+  std::optional<Shown> shown_;  ///< what every subscriber has got; of the thread
   std::int32_t last_id_ = 0;
 
   std::mutex mutex_;

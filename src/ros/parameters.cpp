@@ -47,6 +47,7 @@ const Entry kNumbers[] = {
     {"marker_rate", &P::marker_rate, {0.1, 100, "Hz"}, "`~markers` is published at most so often"},
     {"marker_lifetime", &P::marker_lifetime, {0.1, 3600, "s"}, "how long the markers of a query stay"},
     {"max_marker_queries", &P::max_marker_queries, {0, 10000, ""}, "queries that are drawn at once, the latest ones"},
+    {"max_marker_labels", &P::max_marker_labels, {0, 10000, ""}, "boxes whose labels are drawn, the first ones"},
 };
 // clang-format on
 const Range kTopicTimeout = {0, 1e9, "s"};

@@ -141,6 +141,30 @@ TEST_F(Markers, FollowTheBoxesAtMostAtTheirRate) {
   EXPECT_LE(static_cast<double>(times.size()), span * 5 + 3);
 }
 
+TEST_F(Markers, TellWhatWaitsAndWhatIsStale) {
+  Viewer viewer;
+  ASSERT_TRUE(viewer.sees("edges//boxes"));
+  boxes_.say(array({cube("nowhere", 1, 6)}));
+  ASSERT_TRUE(viewer.sees("waiting//boxes")) << "box 1, where it was";
+  ASSERT_TRUE(viewer.sees("status"));
+  EXPECT_EQ(viewer.last("status").text, "/boxes: 1 waiting for tf");
+  ASSERT_TRUE(eventually([&] { return viewer.last("boxes//boxes").points.size() == 36; }));
+  boxes_.say(array({cube("map", 1, 6)}));
+  ASSERT_TRUE(viewer.seesDeleted("waiting//boxes"));
+  ASSERT_TRUE(viewer.seesDeleted("status"));
+
+  ArrayTalker fades("fades");
+  ASSERT_TRUE(fades.isHeard());
+  fades.say(array({cube("map", 1, 30)}));
+  ASSERT_TRUE(viewer.sees("boxes//fades"));
+  ASSERT_TRUE(viewer.sees("stale//fades")) << "nothing has changed but the time";
+  ASSERT_TRUE(viewer.seesDeleted("boxes//fades"));
+  EXPECT_EQ(viewer.last("labels//fades").text, "test/1");
+  fades.say(array({withAction(cube("map", 0, 0), Marker::DELETEALL)}));
+  ASSERT_TRUE(viewer.seesDeleted("stale//fades"));
+  ASSERT_TRUE(viewer.seesDeleted("labels//fades"));
+}
+
 TEST_F(Markers, AreSentAgainToAViewerThatComesBack) {
   for (int visit = 0; visit < 3; ++visit) {
     Viewer viewer;

@@ -67,6 +67,8 @@ struct Parameters {
   double marker_lifetime = 5.0;
   /// Queries that are drawn at once, the latest ones.
   int max_marker_queries = 200;
+  /// Boxes whose labels are drawn; 0: none.
+  int max_marker_labels = 0;
 
   /// Reads every parameter that is set in the namespace of `private_nh`; the others keep their
   /// defaults. Warns of parameters that it does not know.

@@ -66,6 +66,9 @@ struct Snapshot {
   std::vector<BoxName> names;      ///< ... has this name
   std::vector<ros::Time> stamps;   ///< ... and came with this stamp (of the message)
   std::vector<TopicState> topics;  ///< in the order of the parameter
+  /// Boxes that are where they were, since the last word on them waits for its transform or was
+  /// rejected; ascending.
+  std::vector<std::size_t> outdated;
 
   /// At ROS time `now`: every required topic heard, none stale, no box waiting or rejected. At time
   /// 0, before a simulated clock has started, nothing is complete.
