@@ -115,6 +115,21 @@ const char* activeKernels() noexcept;
 /// is as if it were not set.
 bool isKernelChoiceRefused() noexcept;
 
+/// The largest range [m] of each of several rays: >= 0, +inf where it is unlimited.
+class MaxRanges {
+ public:
+  /// The same for all of them.
+  MaxRanges(double same) : same_(same) {}
+  /// An array with one for each ray, which outlives this.
+  explicit MaxRanges(const double* each) : each_(each) {}
+
+  double operator[](std::size_t ray) const { return each_ != nullptr ? each_[ray] : same_; }
+
+ private:
+  double same_ = 0.0;
+  const double* each_ = nullptr;
+};
+
 /// An immutable set of boxes. All queries are const, take no lock and may run on any number of
 /// threads.
 ///
@@ -164,16 +179,16 @@ class Scene {
 
   /// The same of `count` rays one after the other, with the same answers: where there are many
   /// boxes in less time, since several of them are under way at once. See batch.h for all cores.
-  /// @pre isValid() of each, max_range >= 0 (+inf: unlimited)
+  /// @pre isValid() of each
   void cast(const Ray* rays, std::size_t count, Hit* hits,
-            double max_range = std::numeric_limits<double>::infinity(),
+            MaxRanges max_ranges = std::numeric_limits<double>::infinity(),
             const BoxMask* mask = nullptr) const noexcept;
   void castClosest(const Ray* rays, std::size_t count, ClosestBox* closest,
-                   double max_range = std::numeric_limits<double>::infinity(),
+                   MaxRanges max_ranges = std::numeric_limits<double>::infinity(),
                    const BoxMask* mask = nullptr) const noexcept;
   /// 1 for true.
   void castAny(const Ray* rays, std::size_t count, std::uint8_t* any,
-               double max_range = std::numeric_limits<double>::infinity(),
+               MaxRanges max_ranges = std::numeric_limits<double>::infinity(),
                const BoxMask* mask = nullptr) const noexcept;
 
   /// Whether the ray meets any box at a range of at most `max_range`. Never says which.

@@ -16,7 +16,8 @@ constexpr std::size_t kQueries = 256;
 /// Calls take(i, answer, found) for each ray once, in any order.
 template <typename Take>
 void castTogether(kernels::Together together, const kernels::SceneView& view, const Ray* rays,
-                  std::size_t count, double max_range, const BoxMask* mask, Take&& take) {
+                  std::size_t count, const MaxRanges& max_ranges, const BoxMask* mask,
+                  Take&& take) {
   struct Context {
     Take& take;
     std::size_t first;
@@ -34,7 +35,7 @@ void castTogether(kernels::Together together, const kernels::SceneView& view, co
     const std::size_t size = std::min(kQueries, count - first);
     for (std::size_t i = 0; i < size; ++i) {
       Vector3 direction;
-      queries[i] = rayQuery(rays[first + i], max_range, mask, direction);
+      queries[i] = rayQuery(rays[first + i], max_ranges[first + i], mask, direction);
     }
     Context context{take, first};
     together(view, queries, size, deliver, &context);
@@ -43,30 +44,30 @@ void castTogether(kernels::Together together, const kernels::SceneView& view, co
 
 }  // namespace
 
-void Scene::cast(const Ray* rays, std::size_t count, Hit* hits, double max_range,
+void Scene::cast(const Ray* rays, std::size_t count, Hit* hits, MaxRanges max_ranges,
                  const BoxMask* mask) const noexcept {
-  castTogether(impl_->kernels.closest_together, impl_->view, rays, count, max_range, mask,
+  castTogether(impl_->kernels.closest_together, impl_->view, rays, count, max_ranges, mask,
                [&](std::size_t i, kernels::Answer /*answer*/, const kernels::Found* found) {
-                 hits[i] = impl_->hitOf(rays[i], max_range, mask, found);
+                 hits[i] = impl_->hitOf(rays[i], max_ranges[i], mask, found);
                });
 }
 
-void Scene::castClosest(const Ray* rays, std::size_t count, ClosestBox* closest, double max_range,
-                        const BoxMask* mask) const noexcept {
-  castTogether(impl_->kernels.closest_together, impl_->view, rays, count, max_range, mask,
+void Scene::castClosest(const Ray* rays, std::size_t count, ClosestBox* closest,
+                        MaxRanges max_ranges, const BoxMask* mask) const noexcept {
+  castTogether(impl_->kernels.closest_together, impl_->view, rays, count, max_ranges, mask,
                [&](std::size_t i, kernels::Answer /*answer*/, const kernels::Found* found) {
-                 closest[i] = impl_->closestOf(rays[i], max_range, mask, found);
+                 closest[i] = impl_->closestOf(rays[i], max_ranges[i], mask, found);
                });
 }
 
-void Scene::castAny(const Ray* rays, std::size_t count, std::uint8_t* any, double max_range,
+void Scene::castAny(const Ray* rays, std::size_t count, std::uint8_t* any, MaxRanges max_ranges,
                     const BoxMask* mask) const noexcept {
-  castTogether(impl_->kernels.any_together, impl_->view, rays, count, max_range, mask,
+  castTogether(impl_->kernels.any_together, impl_->view, rays, count, max_ranges, mask,
                [&](std::size_t i, kernels::Answer answer, const kernels::Found* found) {
                  const bool is_none = answer == kernels::Answer::kUndecided && found != nullptr &&
                                       found->count == 0 && impl_->tree.left_out().empty();
                  const bool is_met = answer == kernels::Answer::kYes;
-                 any[i] = is_met || (!is_none && castAny(rays[i], max_range, mask)) ? 1 : 0;
+                 any[i] = is_met || (!is_none && castAny(rays[i], max_ranges[i], mask)) ? 1 : 0;
                });
 }
 
