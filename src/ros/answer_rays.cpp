@@ -6,12 +6,15 @@
 #include <box_query/batch.h>
 
 #include <algorithm>
+#include <array>
 
 namespace box_query {
 namespace {
 
 /// [m] that are drawn of a ray that meets nothing.
 constexpr double kDrawnRange = 10.0;
+/// Of a batch, rays that the scene gets together.
+constexpr std::size_t kRaysAtOnce = 128;
 
 Ray rayIn(const Context& context, const geometry_msgs::Point& origin,
           const geometry_msgs::Vector3& direction, const Field& field) {
@@ -130,21 +133,9 @@ void answer(const CastRaysRequest& request, Context& context, CastRaysResponse& 
   const auto rangeOf = [&](std::size_t i) {
     return request.max_ranges.empty() ? kInf : limitOf(elementAt(request.max_ranges, i));
   };
-  const auto cast = [&](const Ray& ray, double max_range) {
-    if (closest) {
-      return scene.cast(ray, max_range, looked_at);
-    }
-    Hit hit;
-    hit.hit = scene.castAny(ray, max_range, looked_at);
-    return hit;
-  };
-  const auto answerOne = [&](std::size_t i) {
-    checkRunning(context.stopping);
-    const Hit hit = cast(rayOf(i), rangeOf(i));
+  const auto set = [&](std::size_t i, const Hit& hit) {
     response.hits[i] = hit.hit;
-    if (closest) {
-      response.ranges[i] = hit.range;
-    }
+    response.ranges[i] = hit.range;
     if (want_exits) {
       response.exit_ranges[i] = hit.exit_range;
     }
@@ -158,15 +149,41 @@ void answer(const CastRaysRequest& request, Context& context, CastRaysResponse& 
       response.boxes[i] = hit.hit ? static_cast<std::int32_t>(hit.box) : -1;
     }
   };
-  forEachPart(rays, context.batch_threads, [&](std::size_t begin, std::size_t end) {
+  const auto answerSome = [&](std::size_t begin, std::size_t end) {
+    checkRunning(context.stopping);
+    std::array<Ray, kRaysAtOnce> some;
+    std::array<double, kRaysAtOnce> max_ranges;
     for (std::size_t i = begin; i < end; ++i) {
-      answerOne(i);
+      some[i - begin] = rayOf(i);
+      max_ranges[i - begin] = rangeOf(i);
     }
-  });
+    const MaxRanges limits(max_ranges.data());
+    if (!closest) {
+      scene.castAny(some.data(), end - begin, &response.hits[begin], limits, looked_at);
+      return;
+    }
+    std::array<Hit, kRaysAtOnce> hits;
+    scene.cast(some.data(), end - begin, hits.data(), limits, looked_at);
+    for (std::size_t i = begin; i < end; ++i) {
+      set(i, hits[i - begin]);
+    }
+  };
+  forEachCountedPart(rays, context.batch_threads, context.totals,
+                     [&](std::size_t begin, std::size_t end) {
+                       for (; begin < end; begin += kRaysAtOnce) {
+                         answerSome(begin, std::min(begin + kRaysAtOnce, end));
+                       }
+                     });
   // The few that are drawn, where somebody looks, are cast again.
   for (std::size_t i = 0; i < rays && !context.drawing.full(); ++i) {
     const Ray ray = rayOf(i);
-    draw(ray, rangeOf(i), cast(ray, rangeOf(i)), miss_means_free, context.drawing);
+    Hit hit;
+    if (closest) {
+      hit = scene.cast(ray, rangeOf(i), looked_at);
+    } else {
+      hit.hit = response.hits[i] != 0;
+    }
+    draw(ray, rangeOf(i), hit, miss_means_free, context.drawing);
   }
   nameBoxes(context.snapshot, {&response.boxes}, response);
 }

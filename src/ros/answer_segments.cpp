@@ -217,11 +217,12 @@ void answer(const CheckSegmentsRequest& request, Context& context,
   }
   if (!ended) {
     const std::size_t first = answered;
-    forEachPart(segments - first, context.batch_threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        answerOne(first + i, false);
-      }
-    });
+    forEachCountedPart(segments - first, context.batch_threads, context.totals,
+                       [&](std::size_t begin, std::size_t end) {
+                         for (std::size_t i = begin; i < end; ++i) {
+                           answerOne(first + i, false);
+                         }
+                       });
   }
   const auto blocked =
       std::find(response.states.begin(), response.states.end(), CheckSegmentsResponse::BLOCKED);

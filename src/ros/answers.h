@@ -6,6 +6,7 @@
 
 #include "ros/conversions.h"
 #include "ros/drawing.h"
+#include "ros/query_totals.h"
 
 #include <box_query/CastRay.h>
 #include <box_query/CastRays.h>
@@ -39,6 +40,8 @@ struct Context {
   Drawing drawing;    ///< filled by the answer
   /// Threads that work on a batch: see forEachPart().
   int batch_threads = 1;
+  /// What other threads than the caller's do is added to it, unless it is null.
+  QueryTotals* totals = nullptr;
   /// Set by a server that ends; null: none does.
   const std::atomic<bool>* stopping = nullptr;
 };

@@ -130,8 +130,16 @@ void Diagnostics::describeWork(Status& status) {
   status.add("boxes dropped: stale topic", counts.dropped_boxes);
   status.add("markers ignored: no box", counts.ignored_markers);
   status.add("scenes built", counts.builds);
+  status.add("scenes refitted of these", counts.refits);
   status.add("scenes not built", counts.avoided_builds);
   status.add("boxes not transformed", counts.avoided_transforms);
+  const QueryCounters queries = server_.queryCounts();
+  status.add("bounds compared in float, by sixteen", queries.nodes);
+  status.add("boxes compared in double", queries.boxes);
+  status.add("boxes rotated for, of these", queries.turned_boxes);
+  status.add("decisions that double left open", queries.certified_decisions);
+  status.add("decisions made exactly", queries.exact_decisions);
+  status.add("numbers rounded exactly", queries.exact_roundings);
 }
 
 }  // namespace box_query

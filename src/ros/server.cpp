@@ -80,8 +80,11 @@ void Server::answerNow(const Request& request, Response& response) {
   const SnapshotPtr snapshot = monitor_.currentScene();
   Context context = {
       *snapshot, ros::Time::now(), frame, markers_.drawing(), monitor_.parameters().batch_threads,
-      &stopping_};
-  answer(request, context, response);
+      &totals_,  &stopping_};
+  {
+    const CountedQueries counted(&totals_);
+    answer(request, context, response);
+  }
   response.message = unknownNames(BoxFilter(request), *snapshot);
   markers_.show(context.drawing.take());
 }

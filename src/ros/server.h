@@ -6,6 +6,7 @@
 #include "ros/checked_request.h"
 #include "ros/conversions.h"
 #include "ros/markers.h"
+#include "ros/query_totals.h"
 
 #include <box_query/GetScene.h>
 #include <box_query/ros/scene_monitor.h>
@@ -40,6 +41,8 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   RequestCounts counts() const { return {answered_, refused_}; }
+  /// What the queries of all requests had to do.
+  QueryCounters queryCounts() const { return totals_.get(); }
 
  private:
   template <class Service>
@@ -59,6 +62,7 @@ class Server {
 
   SceneMonitor& monitor_;
   Markers markers_;
+  QueryTotals totals_;
   std::atomic<std::uint64_t> answered_{0};
   std::atomic<std::uint64_t> refused_{0};
   std::atomic<bool> stopping_{false};

@@ -2,6 +2,7 @@
 // /diagnostics of the real node.
 #include "rostest/server_fixture.h"
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <string>
@@ -127,6 +128,28 @@ TEST(Diagnostics, WarnForTheReasonThatAnswersGive) {
   walls.say(array({withAction(cube("map", 0, 0), visualization_msgs::Marker::DELETEALL)}));
   EXPECT_TRUE(reader.becomes("scene", DiagnosticStatus::OK, "complete"));
   EXPECT_TRUE(reader.counts("scene", "boxes", 0));
+}
+
+TEST(Diagnostics, CountWhatQueriesHadToDo) {
+  Reader reader;
+  ArrayTalker boxes("boxes");
+  ASSERT_TRUE(boxes.isHeard());
+  boxes.say(array({cube("map", 1, 5)}));
+  ASSERT_TRUE(eventually([] { return scene().box_ids.size() == 1; }));
+  ASSERT_TRUE(reader.becomes("work", DiagnosticStatus::OK, ""));
+  const char* const what = "boxes compared in double";
+  const double before = reader.status("work").number(what);
+  CastRaysRequest batch;
+  batch.header.frame_id = "map";
+  batch.origins = {point(0, 0, 0)};
+  batch.directions.assign(1000, vector(1, 0, 0));
+  const auto response = call<CastRays>("cast_rays", batch);
+  ASSERT_TRUE(response.success) << response.message;
+  EXPECT_EQ(std::count(response.hits.begin(), response.hits.end(), 1), 1000);
+  EXPECT_TRUE(eventually([&] { return reader.status("work").number(what) >= before + 1000; }));
+  EXPECT_LE(reader.status("work").number(what), before + 1020) << "a few are cast again, to draw";
+  EXPECT_EQ(reader.status("work").number("boxes rotated for, of these"), 0) << "none is turned";
+  EXPECT_EQ(reader.status("work").number("decisions made exactly"), 0);
 }
 
 TEST(Diagnostics, SayHowOftenBoxesComeAndQueriesAreAsked) {
