@@ -73,6 +73,7 @@ const std::vector<BoxSource>& boxSources() {
       {"autoware_msgs/DetectedObjectArray", "c16aecef51c24c6808480a0295e47806",
        decodeAutowareDetectedObjectArray},
       {"moveit_msgs/CollisionObject", "dbba710596087da521c07564160dfccb", decodeCollisionObject},
+      {"moveit_msgs/PlanningScene", "acfc50bcfd6c7b978066bfa7c786002c", decodePlanningScene},
   };
   return sources;
 }

@@ -148,6 +148,7 @@ void decodeAutowareDetectedObjectArray(WireReader& reader, std::size_t max_boxes
                                        DecodedMessage& message);
 void decodeCollisionObject(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeDerivedObjectArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
+void decodePlanningScene(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeJskBoundingBoxArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
 void decodeVisionBoundingBox3DArray(WireReader& reader, std::size_t max_boxes,
                                     DecodedMessage& message);

@@ -7,7 +7,7 @@
 // primitives, meshes and planes in this order, those too. What differs: solids other than boxes,
 // meshes and planes are ignored and counted, and what is appended is placed by the pose that comes
 // with it.
-#include "ros/box_source.h"
+#include "ros/collision_object.h"
 #include "ros/foreign_fields.h"
 #include "ros/rigid_object.h"
 
@@ -48,6 +48,7 @@ Pose readPose(WireReader& reader) {
 struct Fields {
   Pose pose;
   std::uint32_t primitives = 0;
+  std::size_t ignored = 0;   ///< primitives that are no boxes
   std::uint32_t others = 0;  ///< meshes and planes
   std::vector<WireReader>
       shape_poses;  ///< each at an array of poses: of primitives, meshes, planes
@@ -67,6 +68,7 @@ void readPrimitives(WireReader& reader, std::size_t max_boxes, Fields& fields, B
     message.problem = tooManyBoxes(max_boxes);
     return;
   }
+  fields.object->boxes.reserve(fields.primitives);
   fields.shape_poses.push_back(reader);
   const std::uint32_t poses = reader.count(kPoseSize);
   for (std::uint32_t n = 0; n < std::max(fields.primitives, poses) && reader.ok(); ++n) {
@@ -78,7 +80,7 @@ void readPrimitives(WireReader& reader, std::size_t max_boxes, Fields& fields, B
     const Pose pose = placed(fields.pose, in_object);
     const std::size_t accepted = change.boxes.size();
     if (solid.type != SolidPrimitive::kBox) {
-      ++message.ignored;
+      ++fields.ignored;
     } else if (solid.dimensions != 3) {
       change.reject(Rejection::kShape, 1, "it has " + std::to_string(solid.dimensions), n);
     } else {
@@ -189,6 +191,10 @@ void apply(std::int8_t operation, Fields&& fields, BoxChange& change) {
 }  // namespace
 
 void decodeCollisionObject(WireReader& reader, std::size_t max_boxes, DecodedMessage& message) {
+  readCollisionObject(reader, max_boxes, message);
+}
+
+void readCollisionObject(WireReader& reader, std::size_t max_boxes, DecodedMessage& message) {
   BoxChange& change = message.changes.emplace_back();
   change.whole_namespace = true;
   const WireHeader header = reader.header();
@@ -207,7 +213,7 @@ void decodeCollisionObject(WireReader& reader, std::size_t max_boxes, DecodedMes
   skipSubframes(reader);
   const auto operation = reader.number<std::int8_t>();
   const bool has_shapes = operation == kAdd || operation == kAppend;
-  message.ignored = has_shapes ? message.ignored + fields.others : 0;
+  message.ignored += has_shapes ? fields.ignored + fields.others : 0;
   apply(operation, std::move(fields), change);
 }
 

@@ -19,6 +19,12 @@ DEFINITIONS = {
     'geometry_msgs/PoseWithCovariance': 'geometry_msgs/Pose pose\nfloat64[36] covariance',
     'geometry_msgs/Twist': 'geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular',
     'geometry_msgs/TwistStamped': 'std_msgs/Header header\ngeometry_msgs/Twist twist',
+    'geometry_msgs/Transform': 'geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation',
+    'geometry_msgs/TransformStamped': """
+std_msgs/Header header
+string child_frame_id
+geometry_msgs/Transform transform""",
+    'geometry_msgs/Wrench': 'geometry_msgs/Vector3 force\ngeometry_msgs/Vector3 torque',
     'geometry_msgs/Accel': 'geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular',
     'geometry_msgs/Polygon': 'geometry_msgs/Point32[] points',
     'geometry_msgs/PolygonStamped': 'std_msgs/Header header\ngeometry_msgs/Polygon polygon',
@@ -219,6 +225,72 @@ byte REMOVE=1
 byte APPEND=2
 byte MOVE=3
 byte operation""",
+    'sensor_msgs/JointState': """
+std_msgs/Header header
+string[] name
+float64[] position
+float64[] velocity
+float64[] effort""",
+    'sensor_msgs/MultiDOFJointState': """
+std_msgs/Header header
+string[] joint_names
+geometry_msgs/Transform[] transforms
+geometry_msgs/Twist[] twist
+geometry_msgs/Wrench[] wrench""",
+    'trajectory_msgs/JointTrajectoryPoint': """
+float64[] positions
+float64[] velocities
+float64[] accelerations
+float64[] effort
+duration time_from_start""",
+    'trajectory_msgs/JointTrajectory': """
+std_msgs/Header header
+string[] joint_names
+trajectory_msgs/JointTrajectoryPoint[] points""",
+    'octomap_msgs/Octomap': """
+std_msgs/Header header
+bool binary
+string id
+float64 resolution
+int8[] data""",
+    'octomap_msgs/OctomapWithPose': """
+std_msgs/Header header
+geometry_msgs/Pose origin
+octomap_msgs/Octomap octomap""",
+    'moveit_msgs/AttachedCollisionObject': """
+string link_name
+moveit_msgs/CollisionObject object
+string[] touch_links
+trajectory_msgs/JointTrajectory detach_posture
+float64 weight""",
+    'moveit_msgs/RobotState': """
+sensor_msgs/JointState joint_state
+sensor_msgs/MultiDOFJointState multi_dof_joint_state
+moveit_msgs/AttachedCollisionObject[] attached_collision_objects
+bool is_diff""",
+    'moveit_msgs/AllowedCollisionEntry': 'bool[] enabled',
+    'moveit_msgs/AllowedCollisionMatrix': """
+string[] entry_names
+moveit_msgs/AllowedCollisionEntry[] entry_values
+string[] default_entry_names
+bool[] default_entry_values""",
+    'moveit_msgs/LinkPadding': 'string link_name\nfloat64 padding',
+    'moveit_msgs/LinkScale': 'string link_name\nfloat64 scale',
+    'moveit_msgs/ObjectColor': 'string id\nstd_msgs/ColorRGBA color',
+    'moveit_msgs/PlanningSceneWorld': """
+moveit_msgs/CollisionObject[] collision_objects
+octomap_msgs/OctomapWithPose octomap""",
+    'moveit_msgs/PlanningScene': """
+string name
+moveit_msgs/RobotState robot_state
+string robot_model_name
+geometry_msgs/TransformStamped[] fixed_frame_transforms
+moveit_msgs/AllowedCollisionMatrix allowed_collision_matrix
+moveit_msgs/LinkPadding[] link_padding
+moveit_msgs/LinkScale[] link_scale
+moveit_msgs/ObjectColor[] object_colors
+moveit_msgs/PlanningSceneWorld world
+bool is_diff""",
 }
 
 

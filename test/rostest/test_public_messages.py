@@ -76,11 +76,21 @@ class TestPublicMessages(unittest.TestCase):
         message.header.stamp = rospy.Time(stamp)
         return message
 
-    def check_ray(self, topic, x, label):
-        """A ray down onto a box of the topic names it."""
+    def ask_ray(self, x):
         request = CastRayRequest(origin=Point(x, -2.0, 50.0), direction=Vector3(0, 0, -1), allow_incomplete=True)
         request.header.frame_id = 'map'
-        answer = self.cast_ray(request)
+        return self.cast_ray(request)
+
+    def await_ray(self, topic, x, label):
+        """Waits until a ray down meets something at x, which check_ray() then names."""
+        deadline = rospy.get_time() + TIMEOUT
+        while not self.ask_ray(x).hit and rospy.get_time() < deadline:
+            rospy.sleep(0.02)
+        self.check_ray(topic, x, label)
+
+    def check_ray(self, topic, x, label):
+        """A ray down onto a box of the topic names it."""
+        answer = self.ask_ray(x)
         self.assertTrue(answer.success and answer.hit, answer.message)
         self.assertEqual((answer.box_topic, answer.box_label), ('/' + topic, label))
         self.assertAlmostEqual(answer.range, 50.0 - 1.6, places=12)
@@ -182,8 +192,36 @@ class TestPublicMessages(unittest.TestCase):
         publisher.publish(shelf(63.0, 2))
         second = ('shelf', 1 << 32, 'furniture')
         self.check_box(self.names_of('collision_objects', [first, second])[second], 63.0, 7)
+        move = self.header(classes['moveit_msgs/CollisionObject'](), 8)
+        fill(move, id='shelf', operation=3)
+        fill(move.pose.position, x=5.0)
+        publisher.publish(move)
+        self.await_ray('collision_objects', 68.0, 'furniture')
+        boxes = self.names_of('collision_objects', [first, second])
+        self.check_box(boxes[first], 65.0, 8)
+        self.check_box(boxes[second], 68.0, 8)
         publisher.publish(shelf(0.0, 1))
         self.names_of('collision_objects', [])
+
+    def test_moveit_planning_scene(self):
+        classes = message_classes('moveit_msgs/PlanningScene')
+
+        def crate(x):
+            one = self.header(classes['moveit_msgs/CollisionObject'](), 7)
+            one.id = 'crate'
+            one.primitives = [fill(classes['shape_msgs/SolidPrimitive'](), type=1, dimensions=list(SIZE))]
+            one.primitive_poses = [self.pose(classes, x)]
+            return one
+        scene = classes['moveit_msgs/PlanningScene'](name='kitchen')
+        scene.robot_state.joint_state.name = ['elbow']
+        scene.world.collision_objects = [crate(70.0)]
+        publisher = self.publisher('planning_scene', type(scene))
+        publisher.publish(scene)
+        self.check_box(self.names_of('planning_scene', [('crate', 0, '')])['crate', 0, ''], 70.0, 7)
+        self.check_ray('planning_scene', 70.0, '')
+        scene.world.collision_objects = []
+        publisher.publish(scene)
+        self.names_of('planning_scene', [])
 
     def test_a_fork_is_named_and_does_no_harm(self):
         """A fork of jsk_recognition_msgs has a velocity under the same name."""
@@ -201,7 +239,8 @@ class TestPublicMessages(unittest.TestCase):
         self.assertIn('%s (md5 %s) is not understood' % (name, fork._md5sum), reason)
         for known in ('jsk_recognition_msgs/BoundingBoxArray', 'vision_msgs/BoundingBox3DArray',
                       'vision_msgs/Detection3DArray', 'derived_object_msgs/ObjectArray',
-                      'autoware_msgs/DetectedObjectArray', 'moveit_msgs/CollisionObject'):
+                      'autoware_msgs/DetectedObjectArray', 'moveit_msgs/CollisionObject',
+                      'moveit_msgs/PlanningScene'):
             self.assertIn('%s (%s)' % (known, message_classes(known)[known]._md5sum), reason)
 
 

@@ -13,8 +13,10 @@
 #include <geometry_msgs/PolygonStamped.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/PoseWithCovariance.h>
+#include <geometry_msgs/TransformStamped.h>
 #include <geometry_msgs/TwistStamped.h>
 #include <geometry_msgs/Vector3.h>
+#include <geometry_msgs/Wrench.h>
 #include <ros/serialization.h>
 #include <std_msgs/ColorRGBA.h>
 #include <std_msgs/Header.h>
@@ -222,8 +224,107 @@ struct CollisionObject {
   std::int8_t operation = 0;
 };
 
+struct JointState {
+  std_msgs::Header header;
+  std::vector<std::string> name;
+  std::vector<double> position;
+  std::vector<double> velocity;
+  std::vector<double> effort;
+};
+
+struct MultiDofJointState {
+  std_msgs::Header header;
+  std::vector<std::string> joint_names;
+  std::vector<geometry_msgs::Transform> transforms;
+  std::vector<geometry_msgs::Twist> twist;
+  std::vector<geometry_msgs::Wrench> wrench;
+};
+
+struct JointTrajectoryPoint {
+  std::vector<double> positions;
+  std::vector<double> velocities;
+  std::vector<double> accelerations;
+  std::vector<double> effort;
+  ros::Duration time_from_start;
+};
+
+struct JointTrajectory {
+  std_msgs::Header header;
+  std::vector<std::string> joint_names;
+  std::vector<JointTrajectoryPoint> points;
+};
+
+struct AttachedCollisionObject {
+  std::string link_name;
+  CollisionObject object;
+  std::vector<std::string> touch_links;
+  JointTrajectory detach_posture;
+  double weight = 0;
+};
+
+struct AllowedCollisionEntry {
+  std::vector<std::uint8_t> enabled;
+};
+
+struct LinkNumber {  // LinkPadding, LinkScale
+  std::string link_name;
+  double number = 0;
+};
+
+struct ObjectColor {
+  std::string id;
+  std_msgs::ColorRGBA color;
+};
+
+struct OctomapWithPose {
+  std_msgs::Header header;
+  geometry_msgs::Pose origin;
+  std_msgs::Header octomap_header;
+  std::uint8_t binary = 0;
+  std::string id;
+  double resolution = 0;
+  std::vector<std::int8_t> data;
+};
+
+struct PlanningScene {
+  std::string name;
+  JointState joint_state;
+  MultiDofJointState multi_dof_joint_state;
+  std::vector<AttachedCollisionObject> attached_collision_objects;
+  std::uint8_t robot_state_is_diff = 0;
+  std::string robot_model_name;
+  std::vector<geometry_msgs::TransformStamped> fixed_frame_transforms;
+  std::vector<std::string> entry_names;
+  std::vector<AllowedCollisionEntry> entry_values;
+  std::vector<std::string> default_entry_names;
+  std::vector<std::uint8_t> default_entry_values;
+  std::vector<LinkNumber> link_padding;
+  std::vector<LinkNumber> link_scale;
+  std::vector<ObjectColor> object_colors;
+  std::vector<CollisionObject> collision_objects;
+  OctomapWithPose octomap;
+  std::uint8_t is_diff = 0;
+};
+
 }  // namespace box_query::test
 
+BQ_SERIALIZED(JointState, m.header, m.name, m.position, m.velocity, m.effort)
+BQ_SERIALIZED(MultiDofJointState, m.header, m.joint_names, m.transforms, m.twist, m.wrench)
+BQ_SERIALIZED(JointTrajectoryPoint, m.positions, m.velocities, m.accelerations, m.effort,
+              m.time_from_start)
+BQ_SERIALIZED(JointTrajectory, m.header, m.joint_names, m.points)
+BQ_SERIALIZED(AttachedCollisionObject, m.link_name, m.object, m.touch_links, m.detach_posture,
+              m.weight)
+BQ_SERIALIZED(AllowedCollisionEntry, m.enabled)
+BQ_SERIALIZED(LinkNumber, m.link_name, m.number)
+BQ_SERIALIZED(ObjectColor, m.id, m.color)
+BQ_SERIALIZED(OctomapWithPose, m.header, m.origin, m.octomap_header, m.binary, m.id, m.resolution,
+              m.data)
+BQ_SERIALIZED(PlanningScene, m.name, m.joint_state, m.multi_dof_joint_state,
+              m.attached_collision_objects, m.robot_state_is_diff, m.robot_model_name,
+              m.fixed_frame_transforms, m.entry_names, m.entry_values, m.default_entry_names,
+              m.default_entry_values, m.link_padding, m.link_scale, m.object_colors,
+              m.collision_objects, m.octomap, m.is_diff)
 BQ_SERIALIZED(MeshTriangle, m.vertex_indices)
 BQ_SERIALIZED(Plane, m.coef)
 BQ_SERIALIZED(Mesh, m.triangles, m.vertices)

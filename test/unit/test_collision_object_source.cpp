@@ -1,49 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ros/box_tracker.h"
-#include "unit/foreign_messages.h"
-#include "unit/source_fixture.h"
+#include "unit/collision_objects.h"
 
 #include <cmath>
-#include <variant>
 
 namespace box_query::test {
 namespace {
 
 constexpr const char* kType = "moveit_msgs/CollisionObject";
-enum Operation : std::int8_t { kAdd, kRemove, kAppend, kMove };
-
-SolidPrimitive solid(std::uint8_t type, const std::vector<double>& dimensions) {
-  SolidPrimitive primitive;
-  primitive.type = type;
-  primitive.dimensions = dimensions;
-  return primitive;
-}
-
-geometry_msgs::Pose poseAt(double x, double yaw = 0.0) {
-  geometry_msgs::Pose pose;
-  pose.position.x = x;
-  pose.orientation.z = std::sin(yaw / 2);
-  pose.orientation.w = std::cos(yaw / 2);
-  return pose;
-}
-
-/// Boxes at the places given, in the frame of the object.
-CollisionObject object(const std::string& id, const std::vector<double>& places,
-                       Operation operation = kAdd) {
-  CollisionObject message;
-  message.header.frame_id = "/map";
-  message.header.stamp = ros::Time(1234, 5678);
-  message.id = id;
-  message.type_key = "furniture";
-  message.type_db = "shop";
-  message.pose = poseAt(0.0);
-  for (const double x : places) {
-    message.primitives.push_back(solid(1, {1.0, 0.0, 3.0}));
-    message.primitive_poses.push_back(poseAt(x));
-  }
-  message.operation = operation;
-  return message;
-}
 
 DecodedMessage decode(const CollisionObject& message, std::size_t max_boxes = kPlenty) {
   return decodeBytes(kType, wire(message), max_boxes);
@@ -177,24 +140,12 @@ TEST_P(DamagedCollisionObject, IsSurvived) {
   expectSurvivesAnyBytes(kType, whole);
 }
 
-/// "ns/id:x" of every box that a tracker has after these messages, in the order of snapshots.
 std::string after(const std::vector<CollisionObject>& messages) {
-  Parameters parameters;
-  parameters.box_topics = {TopicParameters()};
-  const tf2::BufferCore tf;
-  BoxTracker tracker(parameters, tf);
+  std::vector<DecodedMessage> decoded;
   for (const CollisionObject& message : messages) {
-    tracker.receive(0, &sourceNamed(kType), decode(message), ros::Time(100));
+    decoded.push_back(decode(message));
   }
-  const Draft draft = tracker.draft();
-  std::string text;
-  for (std::size_t i = 0; i < draft.boxes.size(); ++i) {
-    const BoxName& name = draft.snapshot.names[i];
-    text += name.ns + "/" + std::to_string(name.id) + ":" +
-            std::to_string(std::lround(std::get<OrientedBox>(draft.boxes[i]).center.x())) + " ";
-  }
-  const std::size_t rejected = draft.snapshot.topics.at(0).rejected;
-  return text + (rejected > 0 ? "rejected " + std::to_string(rejected) : "");
+  return contentsAfter(kType, std::move(decoded));
 }
 
 TEST(CollisionObjects, AreReplacedAppendedAndRemovedOneByOne) {
