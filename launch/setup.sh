@@ -20,7 +20,8 @@ bq_packages() {
     */peers) echo libembree-dev libbullet-dev libfcl-dev libode-dev ;;
     debian/build) echo catkin libroscpp-dev libtf2-dev libtf2-ros-dev libtf2-msgs-dev libstd-msgs-dev \
       libgeometry-msgs-dev libvisualization-msgs-dev libnodelet-dev libnodeletlib-dev pluginlib-dev \
-      libdiagnostic-msgs-dev libdiagnostic-updater-dev ros-std-msgs ros-geometry-msgs ros-visualization-msgs ros-message-generation ros-message-runtime ;;
+      libdiagnostic-msgs-dev libdiagnostic-updater-dev \
+      libinteractive-markers-dev ros-std-msgs ros-geometry-msgs ros-visualization-msgs ros-message-generation ros-message-runtime ;;
     debian/demo) echo python3-roslaunch python3-rosservice python3-rospy python3-std-msgs \
       python3-geometry-msgs python3-visualization-msgs tf2-tools ;;
     debian/viewer) echo rviz ;;
@@ -29,7 +30,7 @@ bq_packages() {
     noetic/build) echo ros-noetic-catkin ros-noetic-roscpp ros-noetic-tf2 ros-noetic-tf2-ros \
       ros-noetic-std-msgs ros-noetic-geometry-msgs ros-noetic-visualization-msgs \
       ros-noetic-message-generation ros-noetic-message-runtime ros-noetic-nodelet ros-noetic-pluginlib \
-      ros-noetic-diagnostic-msgs ros-noetic-diagnostic-updater ;;
+      ros-noetic-diagnostic-msgs ros-noetic-diagnostic-updater ros-noetic-interactive-markers ;;
     noetic/demo) echo ros-noetic-roslaunch ros-noetic-rosservice ros-noetic-rospy ;;
     noetic/viewer) echo ros-noetic-rviz ;;
     noetic/test) echo ros-noetic-rosbag ros-noetic-rostest ;;
