@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -125,6 +126,8 @@ struct SpeedMethodKind {
   std::string name;
   std::function<std::unique_ptr<SpeedMethod>(const std::vector<OrientedBox>&)> make;
   bool is_built = true;  ///< Whether there is something to build.
+  /// Of a scene: with more it takes so long that it tells nothing that it did not tell before.
+  std::size_t most_boxes = std::numeric_limits<std::size_t>::max();
 };
 
 /// box_query first, then a plain scan, then the peers that were found.
@@ -153,7 +156,6 @@ struct SpeedRow {
 struct SpeedOptions {
   int rounds = 15;           ///< Turns of each method on the clock.
   std::size_t sample = 500;  ///< Rays whose answers are compared, fewer where boxes are very many.
-  std::size_t batch = 8192;  ///< Rays of a call: those of the scene, again and again.
 };
 
 std::vector<SpeedRow> measureSpeed(const Workload& workload, const SpeedOptions& options,

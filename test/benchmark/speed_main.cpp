@@ -90,7 +90,7 @@ class Run {
     for (const std::string& kind : workloadKinds()) {
       for (const std::size_t boxes : sizesOf(kind, arguments_.quick)) {
         if (isWanted(kind, boxes)) {
-          measure(makeWorkload(kind, boxes, 2048, 7), speedMethods());
+          measure(makeWorkload(kind, boxes, 8192, 7), speedMethods());
         }
       }
     }

@@ -7,12 +7,13 @@
 namespace box_query::benchmark {
 namespace {
 
-/// A scan of very many boxes tells nothing that it did not tell before.
-constexpr std::size_t kMostToScan = 2000;
 /// What others take to build more is known from fewer.
 constexpr std::size_t kMostToBuild = 100000;
 /// Boxes that answers are compared with, one by one, for a line of the table.
 constexpr std::size_t kMostCompared = 100000000;
+
+/// Rays of a scene that are asked about one by one; in a batch, all.
+constexpr std::size_t kSingles = 2048;
 
 /// One way of one method.
 struct Contender {
@@ -28,17 +29,18 @@ class Measurement {
               const std::vector<SpeedMethodKind>& kinds)
       : workload_(workload), options_(options), kinds_(kinds), methods_(kinds.size()) {
     for (const SpeedScene& scene : workload.scenes) {
-      rays_ += scene.rays.size();
+      const std::size_t singles = std::min(kSingles, scene.rays.size());
+      singles_.emplace_back(scene.rays.begin(),
+                            scene.rays.begin() + static_cast<std::ptrdiff_t>(singles));
+      rays_ += singles;
       boxes_ += scene.boxes.size();
-      for (std::size_t m = 0; m < kinds_.size(); ++m) {
-        if (!isTooSlow(m)) {
+    }
+    for (std::size_t m = 0; m < kinds_.size(); ++m) {
+      for (const SpeedScene& scene : workload.scenes) {
+        if (boxesOfAScene() <= kinds_[m].most_boxes) {
           methods_[m].push_back(kinds_[m].make(scene.boxes));
         }
       }
-    }
-    const std::vector<Ray>& rays = workload.scenes.front().rays;
-    while (batch_.size() < options.batch) {
-      batch_.push_back(rays[batch_.size() % rays.size()]);
     }
   }
 
@@ -91,7 +93,8 @@ class Measurement {
     std::vector<Contender> contenders;
     std::vector<Pass> passes;
     for (std::size_t m = 0; m < kinds_.size(); ++m) {
-      if (kinds_[m].is_built && (m == 0 || boxesOfAScene() <= kMostToBuild)) {
+      if (kinds_[m].is_built && !methods_[m].empty() &&
+          (m == 0 || boxesOfAScene() <= kMostToBuild)) {
         contenders.push_back({m, kinds_[m].name});
         passes.push_back([this, m] {
           std::uint64_t made = 0;
@@ -109,25 +112,23 @@ class Measurement {
 
  private:
   std::size_t boxesOfAScene() const { return boxes_ / workload_.scenes.size(); }
-  bool isTooSlow(std::size_t m) const {
-    return kinds_[m].name == "plain scan" && boxesOfAScene() > kMostToScan;
-  }
 
   std::uint64_t pass(std::size_t m, Question question) const {
     std::uint64_t sum = 0;
     for (std::size_t s = 0; s < workload_.scenes.size(); ++s) {
-      sum = 31 * sum + methods_[m][s]->pass(question, workload_.scenes[s].rays);
+      sum = 31 * sum + methods_[m][s]->pass(question, singles_[s]);
     }
     return sum;
   }
 
   void batch(Question question, Mode mode, const std::vector<Contender>& contenders) {
+    const std::vector<Ray>& rays = workload_.scenes.front().rays;
     std::vector<std::vector<SpeedAnswer>> answers(contenders.size());
     std::vector<Pass> passes;
     for (std::size_t k = 0; k < contenders.size(); ++k) {
-      answers[k].resize(batch_.size());
+      answers[k].resize(rays.size());
       passes.push_back([&, k] {
-        methods_[contenders[k].method].front()->askEach(question, batch_, contenders[k].way,
+        methods_[contenders[k].method].front()->askEach(question, rays, contenders[k].way,
                                                         answers[k]);
         std::uint64_t sum = 0;
         for (const SpeedAnswer& answer : answers[k]) {
@@ -136,7 +137,7 @@ class Measurement {
         return sum;
       });
     }
-    time(question, mode, contenders, passes, batch_.size());
+    time(question, mode, contenders, passes, rays.size());
     compare(question, contenders, [&](const Contender& contender, std::size_t, std::size_t ray) {
       return answers[static_cast<std::size_t>(&contender - contenders.data())][ray];
     });
@@ -186,7 +187,7 @@ class Measurement {
   const SpeedOptions& options_;
   const std::vector<SpeedMethodKind>& kinds_;
   std::vector<std::vector<std::unique_ptr<SpeedMethod>>> methods_;
-  std::vector<Ray> batch_;
+  std::vector<std::vector<Ray>> singles_;
   std::size_t rays_ = 0;
   std::size_t boxes_ = 0;
   std::vector<SpeedRow> rows_;

@@ -132,7 +132,7 @@ const char* nameOf(Mode mode) {
 
 std::vector<SpeedMethodKind> speedMethods() {
   std::vector<SpeedMethodKind> methods = {{"box_query", makeMethod<Ours>},
-                                          {"plain scan", makeScan, false}};
+                                          {"plain scan", makeScan, false, 2000}};
   for (const Peer& peer : peers()) {
     methods.insert(methods.end(), peer.methods.begin(), peer.methods.end());
   }

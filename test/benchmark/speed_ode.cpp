@@ -99,7 +99,7 @@ class Ode final : public SpeedMethod {
 }  // namespace
 
 Peer odePeer() {
-  return {std::string("ODE ") + dODE_VERSION, {{"ODE", makeMethod<Ode>}}};
+  return {std::string("ODE ") + dODE_VERSION, {{"ODE", makeMethod<Ode>, true, 100000}}};
 }
 
 }  // namespace box_query::benchmark
