@@ -46,7 +46,7 @@ double blockedAtOf(const Segment& segment, const BoxType& box, double radius) {
     return findIntersection(segment, box).t_enter;
   }
   const NearestEstimate estimate = estimateOf(segment, box);
-  return isFarther(segment, box, estimate, radius)
+  return isFarther(segment, box, estimate.bounds, radius)
              ? std::numeric_limits<double>::infinity()
              : roundedFirstWithin(segment, box, estimate, radius);
 }
@@ -74,12 +74,12 @@ exact::Ratio exactSquaredDistance(const Segment& segment, const BoxType& box) {
 }
 
 template <typename BoxType>
-bool isFarther(const Segment& segment, const BoxType& box, const NearestEstimate& estimate,
+bool isFarther(const Segment& segment, const BoxType& box, const DistanceBounds& bounds,
                double radius) {
-  if (estimate.bounds.lower > radius) {
+  if (bounds.lower > radius) {
     return true;
   }
-  if (estimate.bounds.upper <= radius) {
+  if (bounds.upper <= radius) {
     return false;
   }
   if (radius == 0.0) {
@@ -112,8 +112,8 @@ template exact::Ratio exactSquaredDistance(const Segment&, const OrientedBox&);
 template SegmentDistance roundedDistance(const Segment&, const AlignedBox&, const NearestEstimate&);
 template SegmentDistance roundedDistance(const Segment&, const OrientedBox&,
                                          const NearestEstimate&);
-template bool isFarther(const Segment&, const AlignedBox&, const NearestEstimate&, double);
-template bool isFarther(const Segment&, const OrientedBox&, const NearestEstimate&, double);
+template bool isFarther(const Segment&, const AlignedBox&, const DistanceBounds&, double);
+template bool isFarther(const Segment&, const OrientedBox&, const DistanceBounds&, double);
 template double roundedFirstWithin(const Segment&, const AlignedBox&, const NearestEstimate&,
                                    double);
 template double roundedFirstWithin(const Segment&, const OrientedBox&, const NearestEstimate&,
@@ -131,14 +131,14 @@ SegmentDistance distance(const Segment& segment, const OrientedBox& box) noexcep
 }
 
 bool isClear(const Segment& segment, const AlignedBox& box, double radius) noexcept {
-  return isFarther(segment, box, estimateOf(segment, box), radius);
+  return isFarther(segment, box, estimateOf(segment, box).bounds, radius);
 }
 
 bool isClear(const Segment& segment, const OrientedBox& box, double radius) noexcept {
   if (const auto form = alignedForm(box)) {
     return isClear(segment, form->box, radius);
   }
-  return isFarther(segment, box, estimateOf(segment, box), radius);
+  return isFarther(segment, box, estimateOf(segment, box).bounds, radius);
 }
 
 double blockedAt(const Segment& segment, const AlignedBox& box, double radius) noexcept {

@@ -40,7 +40,7 @@ exact::Ratio exactSquaredDistance(const Segment& segment, const BoxType& box);
 
 /// Whether the exact distance is greater than the radius.
 template <typename BoxType>
-bool isFarther(const Segment& segment, const BoxType& box, const NearestEstimate& estimate,
+bool isFarther(const Segment& segment, const BoxType& box, const DistanceBounds& bounds,
                double radius);
 
 /// See blockedAt(), for a segment that is not clear of the box.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The kernels for every CPU.
 #include "exact/bounds.h"
+#include "exact/distance_bounds.h"
 #include "exact/float_model.h"
 #include "kernels/float_bounds.h"
 #include "kernels/kernels.h"
@@ -20,6 +21,7 @@ namespace portable {
 #include "kernels/generic/traverse.h"
 #include "kernels/generic/ray_queries.h"
 #include "kernels/generic/together.h"
+#include "kernels/generic/box_distance.h"
 #include "kernels/generic/nearest.h"
 // clang-format on
 }  // namespace portable

@@ -141,9 +141,22 @@ struct SegmentQuery {
   const std::uint64_t* mask;
 };
 
+/// A box that may be within the bound: SegmentSlabs, NearestGuess and DistanceBounds of
+/// geometry/distance_filter.h, with a fourth lane of whatever.
+struct alignas(32) NearBox {
+  double below[4];
+  double above[4];
+  double direction[4];
+  double excess[4];
+  double scale;
+  double t;
+  double lower;
+  double upper;
+};
+
 /// Takes a box that may be within the bound.
 /// @return the bound from now on, which never grows; negative to end the query
-using Approach = double (*)(void* context, std::uint32_t box);
+using Approach = double (*)(void* context, std::uint32_t box, const NearBox& near);
 
 /// A component and an oriented box.
 ///

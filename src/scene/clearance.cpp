@@ -19,26 +19,17 @@
 namespace box_query {
 namespace {
 
-NearestEstimate estimateFor(const Segment& segment, const PreparedBox& box) {
-  switch (box.kind) {
-    case PreparedBox::Kind::kAligned:
-      return estimateNearest(segment, box.aligned);
-    case PreparedBox::Kind::kOriented:
-      return estimateNearest(segment, box.oriented);
-    case PreparedBox::Kind::kExactOnly:
-      break;
-  }
-  return {};
-}
-
 bool meet(const Segment& segment, const Box& any) {
   return std::visit([&](const auto& box) { return testIntersection(segment, box); }, any);
 }
 
-bool isFartherThan(const Segment& segment, const Box& any, const NearestEstimate& estimate,
+bool isFartherThan(const Segment& segment, const Box& any, const DistanceBounds& bounds,
                    double radius) {
-  return std::visit([&](const auto& box) { return isFarther(segment, box, estimate, radius); },
-                    any);
+  // (What the bounds decide needs no box, which may be far away in memory.)
+  return bounds.lower > radius ||
+         (bounds.upper > radius &&
+          std::visit([&](const auto& box) { return isFarther(segment, box, bounds, radius); },
+                     any));
 }
 
 /// A box that may be the nearest one.
@@ -47,10 +38,10 @@ bool isFartherThan(const Segment& segment, const Box& any, const NearestEstimate
 /// hardly ever there, of 600 bytes.
 struct Nearby {
   Nearby() = default;
-  Nearby(std::size_t number, const NearestEstimate& e) : box(number), estimate(e) {}
+  Nearby(std::size_t number, const DistanceBounds& b) : box(number), bounds(b) {}
 
   std::size_t box = kNoBox;
-  NearestEstimate estimate;
+  DistanceBounds bounds{0.0, std::numeric_limits<double>::infinity()};
   std::optional<exact::Ratio> squared;
 };
 
@@ -122,41 +113,41 @@ bool Scene::isClear(const Segment& segment, double radius, const BoxMask* mask) 
                             [&](std::size_t i) { return meet(segment, impl_->boxes.simplest(i)); });
   }
   bool clear = true;
-  impl_->forEachNear(segment, radius, false, mask, [&](std::size_t i) {
-    clear = isFartherThan(segment, impl_->boxes.simplest(i),
-                          estimateFor(segment, impl_->boxes.prepared(i)), radius);
-    return clear ? radius : -1.0;
-  });
+  impl_->forEachNear(segment, radius, false, mask,
+                     [&](std::size_t i, const DistanceBounds& bounds, const auto&) {
+                       clear = isFartherThan(segment, impl_->boxes.simplest(i), bounds, radius);
+                       return clear ? radius : -1.0;
+                     });
   return clear;
 }
 
 Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const noexcept {
   Nearby nearest;
+  NearestEstimate nearest_estimate;
   bool met = false;
-  impl_->forEachNear(
-      segment, std::numeric_limits<double>::infinity(), true, mask, [&](std::size_t i) {
-        const Box& box = impl_->boxes.simplest(i);
-        Nearby other(i, estimateFor(segment, impl_->boxes.prepared(i)));
-        if (other.estimate.bounds.lower <= 0.0 && meet(segment, box)) {
-          if (!met || i < nearest.box) {
-            nearest = std::move(other);  // nothing is nearer
-            met = true;
-          }
-          return 0.0;
-        }
-        const DistanceBounds& a = nearest.estimate.bounds;
-        const DistanceBounds& b = other.estimate.bounds;
-        if (nearest.box == kNoBox || b.upper < a.lower ||
-            (!met && b.lower <= a.upper && isNearer(segment, impl_->boxes, other, nearest))) {
-          nearest = std::move(other);
-        }
-        return met ? 0.0 : nearest.estimate.bounds.upper;
-      });
+  impl_->forEachNear(segment, std::numeric_limits<double>::infinity(), true, mask,
+                     [&](std::size_t i, const DistanceBounds& bounds, const auto& estimate) {
+                       const Box& box = impl_->boxes.simplest(i);
+                       Nearby other(i, bounds);
+                       const bool meets = bounds.lower <= 0.0 && meet(segment, box);
+                       // Nothing is nearer than a box that is met.
+                       const bool is_nearer =
+                           meets ? !met || i < nearest.box
+                                 : nearest.box == kNoBox || bounds.upper < nearest.bounds.lower ||
+                                       (!met && bounds.lower <= nearest.bounds.upper &&
+                                        isNearer(segment, impl_->boxes, other, nearest));
+                       if (is_nearer) {
+                         nearest = std::move(other);
+                         nearest_estimate = estimate();
+                       }
+                       met = met || meets;
+                       return met ? 0.0 : nearest.bounds.upper;
+                     });
   if (nearest.box == kNoBox) {
     return {};
   }
   const SegmentDistance d =
-      std::visit([&](const auto& box) { return roundedDistance(segment, box, nearest.estimate); },
+      std::visit([&](const auto& box) { return roundedDistance(segment, box, nearest_estimate); },
                  impl_->boxes.simplest(nearest.box));
   return {nearest.box, d.distance, d.t, d.on_segment, d.on_box};
 }
@@ -179,27 +170,28 @@ Blockage Scene::firstBlockage(const Segment& segment, double radius,
     return impl_->firstMet(segment, mask);
   }
   Blocking first;
-  impl_->forEachNear(segment, radius, false, mask, [&](std::size_t i) {
-    const Box& box = impl_->boxes.simplest(i);
-    Blocking other(i, estimateFor(segment, impl_->boxes.prepared(i)));
-    if (isFartherThan(segment, box, other.estimate, radius)) {
-      return radius;
-    }
-    other.bounds = firstWithinBounds(other.estimate, radius);
-    const bool is_earlier = first.box == kNoBox || other.bounds.upper < first.bounds.lower ||
-                            (other.bounds.lower <= first.bounds.upper &&
-                             isEarlier(segment, impl_->boxes, radius, other, first));
-    if (is_earlier) {
-      first = std::move(other);
-    }
-    return radius;
-  });
+  impl_->forEachNear(segment, radius, false, mask,
+                     [&](std::size_t i, const DistanceBounds& bounds, const auto& estimate) {
+                       if (isFartherThan(segment, impl_->boxes.simplest(i), bounds, radius)) {
+                         return radius;
+                       }
+                       Blocking other(i, estimate());
+                       other.bounds = firstWithinBounds(other.estimate, radius);
+                       const bool is_earlier =
+                           first.box == kNoBox || other.bounds.upper < first.bounds.lower ||
+                           (other.bounds.lower <= first.bounds.upper &&
+                            isEarlier(segment, impl_->boxes, radius, other, first));
+                       if (is_earlier) {
+                         first = std::move(other);
+                       }
+                       return radius;
+                     });
   if (first.box == kNoBox) {
     return {};
   }
-  const double blocked_at =
-      std::visit([&](const auto& box) { return blockedAt(segment, box, radius); },
-                 impl_->boxes.simplest(first.box));
+  const double blocked_at = std::visit(
+      [&](const auto& box) { return roundedFirstWithin(segment, box, first.estimate, radius); },
+      impl_->boxes.simplest(first.box));
   return {true, first.box, blocked_at};
 }
 

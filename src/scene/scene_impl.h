@@ -50,8 +50,9 @@ struct Scene::Impl {
   template <typename T, typename Decide>
   bool meetsAny(const T& linear, double max_range, const BoxMask* mask, Decide&& decide) const;
 
-  /// Calls visit(index) for all boxes that may be within `bound` of the segment. It returns the
-  /// bound from then on, which never grows, or a negative number to end.
+  /// Calls visit(index, bounds, estimate) for all boxes that may be within `bound` of the segment:
+  /// with DistanceBounds, and estimate() for the NearestEstimate. It returns the bound from then
+  /// on, which never grows, or a negative number to end.
   /// @param shrinks only the nearest box matters
   template <typename Visit>
   void forEachNear(const Segment& segment, double bound, bool shrinks, const BoxMask* mask,

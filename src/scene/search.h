@@ -3,6 +3,7 @@
 /// How a query goes through the boxes of a scene: the kernels first, then whatever they leave.
 #pragma once
 
+#include "geometry/distance_query.h"
 #include "scene/candidates.h"
 #include "scene/counters.h"
 #include "scene/first_entered.h"
@@ -105,6 +106,26 @@ inline bool isForKernels(const Segment& segment, const kernels::SceneView& view)
   return near;
 }
 
+inline NearestEstimate estimateOf(const kernels::NearBox& near) {
+  const auto three = [](const double* lanes) {
+    return std::array<double, 3>{lanes[0], lanes[1], lanes[2]};
+  };
+  return {{three(near.below), three(near.above), three(near.direction), near.scale},
+          {near.t, three(near.excess)},
+          {near.lower, near.upper}};
+}
+inline NearestEstimate estimateOf(const Segment& segment, const PreparedBox& box) {
+  switch (box.kind) {
+    case PreparedBox::Kind::kAligned:
+      return estimateNearest(segment, box.aligned);
+    case PreparedBox::Kind::kOriented:
+      return estimateNearest(segment, box.oriented);
+    case PreparedBox::Kind::kExactOnly:
+      break;
+  }
+  return {};
+}
+
 template <typename Visit>
 void Scene::Impl::forEachNear(const Segment& segment, double bound, bool shrinks,
                               const BoxMask* mask, Visit&& visit) const {
@@ -120,9 +141,10 @@ void Scene::Impl::forEachNear(const Segment& segment, double bound, bool shrinks
       Visit& visit;
       bool& ended;
     } context{visit, ended};
-    const auto approach = [](void* to, std::uint32_t box) {
+    const auto approach = [](void* to, std::uint32_t box, const kernels::NearBox& near) {
       auto& c = *static_cast<Context*>(to);
-      const double next = c.visit(std::size_t{box});
+      const double next = c.visit(std::size_t{box}, DistanceBounds{near.lower, near.upper},
+                                  [&] { return estimateOf(near); });
       c.ended = next < 0.0;
       return next;
     };
@@ -131,8 +153,10 @@ void Scene::Impl::forEachNear(const Segment& segment, double bound, bool shrinks
     countWork(work);
   }
   if (!ended) {
-    forEachOther(tree, for_kernels, boxes.size(), mask,
-                 [&](std::size_t i) { return visit(i) >= 0.0; });
+    forEachOther(tree, for_kernels, boxes.size(), mask, [&](std::size_t i) {
+      const NearestEstimate estimate = estimateOf(segment, boxes.prepared(i));
+      return visit(i, estimate.bounds, [&] { return estimate; }) >= 0.0;
+    });
   }
 }
 

@@ -14,6 +14,8 @@ constexpr std::size_t kSlots = kernels::kSlots;
 constexpr std::size_t kFlat = 128;
 /// Roots are compared all: more of them save a level, for longer.
 constexpr std::size_t kMostRoots = 96;
+static_assert(kFlat <= kSlots * kernels::kMostRootNodes, "all nodes of a list are roots");
+static_assert(kMostRoots <= kSlots * (kernels::kMostRootNodes - 1), "append() adds one");
 
 }  // namespace
 

@@ -29,13 +29,18 @@ double distanceTo(const Segment& segment, const Box& any) {
   return std::visit([&](const auto& box) { return distance(segment, box).distance; }, any);
 }
 
-/// How many segments were nearest to a box at some distance.
-int checkNearest(const kernels::Kernels& kernels, const std::vector<Box>& boxes,
-                 const Segment& segment) {
+struct Counts {
+  int apart = 0;  ///< segments that are nearest to a box at some distance
+  std::size_t offered = 0;
+  std::size_t close = 0;  ///< of the boxes offered, those whose bounds tell something
+};
+
+void checkNearest(const kernels::Kernels& kernels, const std::vector<Box>& boxes,
+                  const Segment& segment, Counts& counts) {
   const BoxTree tree(prepareAll(boxes));
   const kernels::SceneView view = tree.view();
   if (!isForKernels(segment, view)) {
-    return 0;
+    return;
   }
   struct Search {
     const std::vector<Box>& boxes;
@@ -43,12 +48,17 @@ int checkNearest(const kernels::Kernels& kernels, const std::vector<Box>& boxes,
     bool shrinks;
     double bound;
     std::set<std::size_t> offered;
+    std::size_t close;  ///< of these, those whose bounds tell something
   };
-  const auto offer = [](void* context, std::uint32_t box) {
+  const auto offer = [](void* context, std::uint32_t box, const kernels::NearBox& near) {
     auto& search = *static_cast<Search*>(context);
     search.offered.insert(box);
+    const double distance = distanceTo(search.segment, search.boxes[box]);
+    EXPECT_LE(near.lower, distance);
+    EXPECT_GE(near.upper, distance);
+    search.close += near.upper - near.lower <= 1e-9 * near.scale ? 1U : 0U;
     if (search.shrinks) {
-      search.bound = std::min(search.bound, distanceTo(search.segment, search.boxes[box]));
+      search.bound = std::min(search.bound, distance);
     }
     return search.bound;
   };
@@ -66,9 +76,9 @@ int checkNearest(const kernels::Kernels& kernels, const std::vector<Box>& boxes,
                                  nullptr};
   };
   kernels::Work work;
-  Search shrinking{boxes, segment, true, kInf, {}};
+  Search shrinking{boxes, segment, true, kInf, {}, 0};
   kernels.nearest(view, querySegment(kInf, true), offer, &shrinking, work);
-  Search fixed{boxes, segment, false, 1.5 * least, {}};
+  Search fixed{boxes, segment, false, 1.5 * least, {}, 0};
   kernels.nearest(view, querySegment(fixed.bound, false), offer, &fixed, work);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (std::isinf(truth[i])) {
@@ -77,22 +87,25 @@ int checkNearest(const kernels::Kernels& kernels, const std::vector<Box>& boxes,
     EXPECT_TRUE(truth[i] > least || shrinking.offered.count(i) == 1) << "box " << i;
     EXPECT_TRUE(truth[i] > fixed.bound || fixed.offered.count(i) == 1) << "box " << i;
   }
-  return least > 0.0 ? 1 : 0;
+  counts.apart += least > 0.0 ? 1 : 0;
+  counts.offered += shrinking.offered.size();
+  counts.close += shrinking.close;
 }
 
 TEST_P(NearestKernelTest, OfferTheNearestInHostileScenes) {
   int asked = 0;
-  int apart = 0;
+  Counts counts;
   for (std::size_t family = 0; family < sceneFamilyNames().size(); ++family) {
     for (std::uint64_t index = 0; index < 60; ++index) {
       const SceneSample scene = makeScene(family, 12, index);
       for (const Sample& s : scene.components) {
-        apart += checkNearest(*GetParam(), scene.boxes, s.segment());
+        checkNearest(*GetParam(), scene.boxes, s.segment(), counts);
         ++asked;
       }
     }
   }
-  EXPECT_GT(apart, asked / 10);
+  EXPECT_GT(counts.apart, asked / 10);
+  EXPECT_GT(10 * counts.close, 9 * counts.offered);
 }
 
 TEST_P(NearestKernelTest, OfferTheNearestAtAnyDepthAndScale) {
@@ -110,14 +123,15 @@ TEST_P(NearestKernelTest, OfferTheNearestAtAnyDepthAndScale) {
           oriented.half_extents *= scale;
         }
       }
-      int apart = 0;
+      Counts counts;
       for (int i = 0; i < 12; ++i) {
         const Vector3 start = random.uniformVector(-0.2 * side, 1.2 * side);
         const double length = i % 3 == 0 ? 0.0 : random.magnitude(-6, 5);
         const Vector3 end = start + length * random.uniformVector(-1.0, 1.0);
-        apart += checkNearest(*GetParam(), boxes, {scale * start, scale * end});
+        checkNearest(*GetParam(), boxes, {scale * start, scale * end}, counts);
       }
-      EXPECT_GT(apart, 2) << count << " boxes, scale " << scale;
+      EXPECT_GT(counts.apart, 2) << count << " boxes, scale " << scale;
+      EXPECT_GT(10 * counts.close, 8 * counts.offered);
     }
   }
 }

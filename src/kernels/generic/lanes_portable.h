@@ -88,6 +88,21 @@ static inline Double4 withSignOf(const Double4& a, const Double4& b) {
 static inline Double4 larger(const Double4& a, const Double4& b) {
   return each4([&](int i) { return largerOf(a.v[i], b.v[i]); });
 }
+static inline Double4 smaller(const Double4& a, const Double4& b) {
+  return each4([&](int i) { return smallerOf(a.v[i], b.v[i]); });
+}
+/// a where b is not 0.
+static inline Double4 orZeroWhereZero(const Double4& a, const Double4& b) {
+  return each4([&](int i) { return b.v[i] != 0.0 ? a.v[i] : 0.0; });
+}
+static inline double sum3(const Double4& a) {
+  return (a.v[0] + a.v[1]) + a.v[2];
+}
+static inline void store4(double* p, const Double4& a) {
+  for (int i = 0; i < 4; ++i) {
+    p[i] = a.v[i];
+  }
+}
 static inline double firstLane(const Double4& a) {
   return a.v[0];
 }

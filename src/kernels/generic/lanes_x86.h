@@ -90,8 +90,16 @@ static inline Double4 sumOf3(Double4 a) {
                                       _mm256_permute4x64_pd(a.v, _MM_SHUFFLE(1, 1, 1, 1))),
                         _mm256_permute4x64_pd(a.v, _MM_SHUFFLE(2, 2, 2, 2)))};
 }
+static inline double sum3(Double4 a) {
+  const __m128d two = _mm256_castpd256_pd128(a.v);
+  return _mm_cvtsd_f64(_mm_add_sd(_mm_add_sd(two, _mm_unpackhi_pd(two, two)),
+                                  _mm256_extractf128_pd(a.v, 1)));
+}
 static inline Double4 larger(Double4 a, Double4 b) {
   return {_mm256_max_pd(a.v, b.v)};
+}
+static inline Double4 smaller(Double4 a, Double4 b) {
+  return {_mm256_min_pd(a.v, b.v)};
 }
 static inline Double4 squareRoot(Double4 a) {
   return {_mm256_sqrt_pd(a.v)};

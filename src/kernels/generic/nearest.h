@@ -170,7 +170,9 @@ class NearestSearch {
     }
     ++work_.boxes;
     work_.turned_boxes += view_.records[record].isAligned() ? 0 : 1;
-    const double bound = approach_(context_, box);
+    NearBox near;
+    estimate(view_.records[record], query_, near);
+    const double bound = approach_(context_, box, near);
     if (bound < 0.0) {
       return false;
     }
