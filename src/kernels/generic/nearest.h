@@ -3,8 +3,8 @@
 //
 // The distance g(t) of the point o + t d from a box is convex, so that from any t0 in [0, 1]
 //   g(t) >= g(t0) + min(-t0 g'(t0), (1 - t0) g'(t0)),  g' = d . w / |w|,  w the excess at t0.
-// The closer t0 is to the nearest point, the better: it is where the segment is nearest to the
-// middle of the bounds, improved by one step of Newton's method.
+// The closer t0 is to the nearest point, the better: it is what one step of Newton's method makes
+// of the middle of the segment; three steps, where it is so long that boxes lie beside other parts.
 //
 // With o relative to the center of the scene and u = 2^-24, o and d are off by u (|o|_1 + |d|_1) as
 // floats, points by twice as much again, and |w|^2, d . w |.| and their sum by at most 16u of what
@@ -14,8 +14,9 @@
 struct FloatSegment {
   Float16 origin[3];
   Float16 direction[3];
-  Float16 inverse_squared;  ///< 1 / |d|^2, or 0
+  Float16 squares[3];  ///< of the direction
   Float16 slack;
+  bool is_long;  ///< so that boxes lie beside all of its parts
 };
 
 static inline FloatSegment floatSegment(const SceneView& view, const SegmentQuery& query) {
@@ -29,16 +30,18 @@ static inline FloatSegment floatSegment(const SceneView& view, const SegmentQuer
     const auto d = static_cast<float>(query.end[i] - query.start[i]);
     s.origin[i] = all16(o);
     s.direction[i] = all16(d);
+    s.squares[i] = all16(d * d);
     squared += d * d;
     size += std::fabs(o) + std::fabs(d);
   }
-  // A segment that is too short for its square is nearest wherever.
-  s.inverse_squared = all16(squared > 0x1p-100F ? 1.0F / squared : 0.0F);
   s.slack = all16(size * loss + 2.0F * shortest);
+  const auto free = 1.5F * static_cast<float>(view.mean_free_path);
+  s.is_long = squared > free * free;
   return s;
 }
 
 /// Lower bounds of the distance to sixteen bounds; NaN for an empty slot.
+template <int kSteps>
 static inline Float16 distances(const Bounds& bounds, const FloatSegment& s) {
   const auto loss = static_cast<float>(bounds::kLoss);
   const auto shortest = static_cast<float>(bounds::kShortest);
@@ -46,30 +49,30 @@ static inline Float16 distances(const Bounds& bounds, const FloatSegment& s) {
   const Float16 one = all16(1.0F);
   Float16 lo[3];
   Float16 hi[3];
-  Float16 projection = zero;
   for (int i = 0; i < 3; ++i) {
     lo[i] = load16(bounds.plane[0][i]) - s.origin[i];
     hi[i] = load16(bounds.plane[1][i]) - s.origin[i];
-    projection = multiplyAdd(lo[i] + hi[i], s.direction[i], projection);
   }
-  // (The middle of an empty slot is NaN, and smaller(NaN, 1) is 1.)
-  Float16 t = larger(smaller(projection * (all16(0.5F) * s.inverse_squared), one), zero);
   // The excess is negative below the bounds, positive above, 0 between.
-  const auto excess = [&](int i) {
-    const Float16 x = t * s.direction[i];
-    return larger(x - hi[i], zero) + smaller(x - lo[i], zero);
+  Float16 w[3];
+  const auto setExcess = [&](const Float16& t) {
+    for (int i = 0; i < 3; ++i) {
+      const Float16 x = t * s.direction[i];
+      w[i] = larger(x - hi[i], zero) + smaller(x - lo[i], zero);
+    }
   };
-  Float16 w[3] = {excess(0), excess(1), excess(2)};
   const auto dotWith = [&](const Float16* v) {
     return multiplyAdd(v[2], w[2], multiplyAdd(v[1], w[1], v[0] * w[0]));
   };
-  Float16 curvature = all16(shortest);
-  for (int i = 0; i < 3; ++i) {
-    curvature = curvature + orZeroWhereZero(s.direction[i] * s.direction[i], w[i]);
-  }
-  t = larger(smaller(t - roughQuotient(dotWith(s.direction), curvature), one), zero);
-  for (int i = 0; i < 3; ++i) {
-    w[i] = excess(i);
+  Float16 t = all16(0.5F);
+  setExcess(t);
+  for (int step = 0; step < kSteps; ++step) {
+    Float16 curvature = all16(shortest);
+    for (int i = 0; i < 3; ++i) {
+      curvature = curvature + orZeroWhereZero(s.squares[i], w[i]);
+    }
+    t = larger(smaller(t - roughQuotient(dotWith(s.direction), curvature), one), zero);
+    setExcess(t);
   }
   const Float16 squared = dotWith(w) + all16(shortest * shortest);
   const Float16 slope = dotWith(s.direction);
@@ -79,16 +82,17 @@ static inline Float16 distances(const Bounds& bounds, const FloatSegment& s) {
 
 /// Nodes and records that are still to be looked at: where only the nearest box matters nearest
 /// first, of each node's children, or else all that are within the bound.
+template <int kSteps>
 class NearestSearch {
  public:
-  NearestSearch(const SceneView& view, const SegmentQuery& query, Approach approach, void* context,
-                Work& work)
+  NearestSearch(const SceneView& view, const SegmentQuery& query, const FloatSegment& segment,
+                Approach approach, void* context, Work& work)
       : view_(view),
         query_(query),
+        segment_(segment),
         approach_(approach),
         context_(context),
-        work_(work),
-        segment_(floatSegment(view, query)) {
+        work_(work) {
     setBound(query.bound);
   }
 
@@ -114,7 +118,7 @@ class NearestSearch {
 
   Float16 lowerBounds(int level, std::uint32_t node) {
     ++work_.nodes;
-    return distances(view_.levels[level].bounds[node], segment_);
+    return distances<kSteps>(view_.levels[level].bounds[node], segment_);
   }
 
   /// Looks at up to kNodes neighbouring nodes.
@@ -184,10 +188,10 @@ class NearestSearch {
 
   const SceneView& view_;
   const SegmentQuery& query_;
+  const FloatSegment& segment_;
   Approach approach_;
   void* context_;
   Work& work_;
-  FloatSegment segment_;
   float bound_;
 };
 
@@ -195,6 +199,11 @@ static void nearest(const SceneView& view, const SegmentQuery& query, Approach a
                     void* context, Work& work) {
   work = Work();
   if (view.depth > 0) {
-    NearestSearch(view, query, approach, context, work).run();
+    const FloatSegment segment = floatSegment(view, query);
+    if (segment.is_long) {
+      NearestSearch<3>(view, query, segment, approach, context, work).run();
+    } else {
+      NearestSearch<1>(view, query, segment, approach, context, work).run();
+    }
   }
 }
