@@ -75,22 +75,50 @@ static inline std::uint32_t notAbove(Float16 a, Float16 b) {
   return static_cast<std::uint32_t>(lo) | (static_cast<std::uint32_t>(hi) << 8);
 }
 
-/// Appends `base` + slot for every slot of `bits`.
-static inline int append(std::uint32_t bits, std::uint32_t base, std::uint32_t* list, int count) {
-  for (; bits != 0; bits &= bits - 1) {
-    list[count++] = base + static_cast<std::uint32_t>(lowestBit(bits));
+/// The slots of eight bits, in order, for every value of the bits.
+struct SlotTable {
+  std::uint8_t slots[256][8];
+};
+static constexpr SlotTable makeSlotTable() {
+  SlotTable table = {};
+  for (int bits = 0; bits < 256; ++bits) {
+    int count = 0;
+    for (int slot = 0; slot < 8; ++slot) {
+      if ((bits >> slot & 1) != 0) {
+        table.slots[bits][count++] = static_cast<std::uint8_t>(slot);
+      }
+    }
   }
-  return count;
+  return table;
+}
+alignas(64) constexpr SlotTable kSlotTable = makeSlotTable();
+
+static inline __m256i slotsOf(std::uint32_t bits) {
+  return _mm256_cvtepu8_epi32(
+      _mm_loadl_epi64(reinterpret_cast<const __m128i*>(kSlotTable.slots[bits])));
+}
+static inline void storeSlots(__m256i slots, std::uint32_t base, std::uint32_t* list) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(list),
+                      _mm256_add_epi32(slots, _mm256_set1_epi32(static_cast<int>(base))));
+}
+
+/// Appends `base` + slot for every slot of `bits`. Up to kSlots entries behind the last one are
+/// written to.
+static inline int append(std::uint32_t bits, std::uint32_t base, std::uint32_t* list, int count) {
+  storeSlots(slotsOf(bits & 0xff), base, list + count);
+  count += __builtin_popcount(bits & 0xff);
+  storeSlots(slotsOf(bits >> 8), base + 8, list + count);
+  return count + __builtin_popcount(bits >> 8);
 }
 /// The same with where each is entered.
 static inline int append(std::uint32_t bits, std::uint32_t base, Float16 near, std::uint32_t* list,
                          float* nears, int count) {
-  alignas(64) float all[kSlots];
-  store16(all, near);
-  for (; bits != 0; bits &= bits - 1) {
-    const int slot = lowestBit(bits);
-    nears[count] = all[slot];
-    list[count++] = base + static_cast<std::uint32_t>(slot);
-  }
-  return count;
+  const __m256i low = slotsOf(bits & 0xff);
+  const __m256i high = slotsOf(bits >> 8);
+  const int middle = count + __builtin_popcount(bits & 0xff);
+  storeSlots(low, base, list + count);
+  _mm256_storeu_ps(nears + count, _mm256_permutevar8x32_ps(near.lo, low));
+  storeSlots(high, base + 8, list + middle);
+  _mm256_storeu_ps(nears + middle, _mm256_permutevar8x32_ps(near.hi, high));
+  return middle + __builtin_popcount(bits >> 8);
 }
