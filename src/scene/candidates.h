@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace box_query {
 
@@ -27,6 +28,20 @@ inline kernels::RayQuery rayQuery(const Segment& segment, double max_range, cons
   direction = isModerate(segment.end) ? Vector3(segment.end - segment.start) : Vector3::Zero();
   return {segment.start.data(), direction.data(), true, max_range,
           mask != nullptr ? mask->words() : nullptr};
+}
+
+/// The same ray with a direction of about 1, times an exact power of two: it meets the same boxes
+/// at the same ranges. Nothing if some component would not be exact.
+inline std::optional<Ray> withDirectionNearOne(const Ray& ray) {
+  const int exponent = std::ilogb(ray.direction.cwiseAbs().maxCoeff());
+  Ray scaled = ray;
+  for (int i = 0; i < 3; ++i) {
+    scaled.direction[i] = std::scalbn(ray.direction[i], -exponent);
+    if (std::scalbn(scaled.direction[i], exponent) != ray.direction[i]) {
+      return std::nullopt;
+    }
+  }
+  return scaled;
 }
 
 /// Calls visit(candidate) for each box in `found` once, in order of their numbers, until it returns

@@ -7,6 +7,7 @@
 #include <box_query/scene.h>
 
 #include <algorithm>
+#include <type_traits>
 #include <variant>
 
 namespace box_query {
@@ -43,11 +44,21 @@ std::vector<BoxIntersection> Scene::Impl::findAll(const T& linear, const BoxMask
   const auto addAlong = [&](const auto& ray) {
     kernels::Found found;
     Vector3 direction;
-    const bool taken =
-        kernels.all(view, rayQuery(ray, kInf, mask, direction), found, addTo, &maybe);
-    addTo(&maybe, found);
-    countWork(found.work);
-    return taken;
+    const auto ask = [&](const auto& half) {
+      const bool taken =
+          kernels.all(view, rayQuery(half, kInf, mask, direction), found, addTo, &maybe);
+      addTo(&maybe, found);
+      countWork(found.work);
+      return taken;
+    };
+    if (ask(ray)) {
+      return true;
+    }
+    if constexpr (std::is_same_v<std::decay_t<decltype(ray)>, Ray>) {
+      const auto scaled = withDirectionNearOne(ray);
+      return scaled && ask(*scaled);
+    }
+    return false;
   };
   bool taken = false;
   if constexpr (kHasStart<T>) {

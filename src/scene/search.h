@@ -9,7 +9,14 @@
 #include "scene/first_entered.h"
 #include "scene/scene_impl.h"
 
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <type_traits>
+
 namespace box_query {
+
+constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 
 /// A range in metres as bounds of the parameter: up to `inside` certainly within, beyond `outside`
 /// certainly not.
@@ -45,8 +52,26 @@ template <typename T>
 void Scene::Impl::findFirst(FirstEntered<T>& first, double max_range, const BoxMask* mask) const {
   kernels::Found found;
   Vector3 direction;
-  const bool taken = kernels.closest(view, rayQuery(first.linear(), max_range, mask, direction),
-                                     found, FirstEntered<T>::take, &first);
+  bool taken = kernels.closest(view, rayQuery(first.linear(), max_range, mask, direction), found,
+                               FirstEntered<T>::take, &first);
+  if constexpr (std::is_same_v<T, Ray>) {
+    if (const auto scaled = taken ? std::nullopt : withDirectionNearOne(first.linear())) {
+      // The parameters of the candidates are those of another direction, their boxes are the same.
+      const auto offerBoxes = [](void* context, const kernels::Found& some) {
+        forEachCandidate(some, [&](const kernels::Candidate& c) {
+          static_cast<FirstEntered<T>*>(context)->offer(c.box, kNoEnd);
+          return true;
+        });
+        return kNoEnd;
+      };
+      taken = kernels.closest(view, rayQuery(*scaled, max_range, mask, direction), found,
+                              offerBoxes, &first);
+      countWork(found.work);
+      offerBoxes(&first, found);
+      offerOthers(first, taken, max_range, mask);
+      return;
+    }
+  }
   countWork(found.work);
   first.offer(found);
   offerOthers(first, taken, max_range, mask);
@@ -70,9 +95,20 @@ bool Scene::Impl::meetsAny(const T& linear, double max_range, const BoxMask* mas
   Undecided undecided{decide};
   kernels::Found found;
   Vector3 direction;
-  const kernels::Answer answer = kernels.any(view, rayQuery(linear, max_range, mask, direction),
-                                             found, Undecided::take, &undecided);
-  countWork(found.work);
+  const auto ask = [&](const T& component) {
+    const auto answer = kernels.any(view, rayQuery(component, max_range, mask, direction), found,
+                                    Undecided::take, &undecided);
+    countWork(found.work);
+    return answer;
+  };
+  kernels::Answer answer = ask(linear);
+  if constexpr (std::is_same_v<T, Ray>) {
+    if (answer == kernels::Answer::kNotTaken) {
+      if (const auto scaled = withDirectionNearOne(linear)) {
+        answer = ask(*scaled);
+      }
+    }
+  }
   if (answer == kernels::Answer::kYes || undecided.met ||
       Undecided::take(&undecided, found) < 0.0) {
     return true;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kernels/scene_view.h"
+#include "reference/sampler.h"
 
+#include <box_query/counters.h>
 #include <box_query/scene.h>
 
 #include <algorithm>
@@ -277,6 +279,47 @@ TEST(SceneCast, MoreNearMissesThanAKernelKeepsAreDecided) {
     EXPECT_EQ(1U, touched.findAll(over).size());
     EXPECT_FALSE(touched.isClear(along, 0.0));
   }
+}
+
+TEST(SceneCast, DirectionsOfAnySizeGoThroughTheTree) {
+  reference::Sampler sampler(77);
+  std::vector<Box> boxes;
+  while (boxes.size() < 1000) {
+    boxes.emplace_back(
+        OrientedBox{sampler.vector(-20.0, 20.0), sampler.rotation(), sampler.vector(0.1, 1.5)});
+  }
+  const Scene scene(boxes);
+  for (const int exponent : {-1000, -200, 200, 1000}) {
+    std::size_t hits = 0;
+    const QueryCounters before = queryCounters();
+    for (int i = 0; i < 50; ++i) {
+      const Ray ray{sampler.vector(-20.0, 20.0), sampler.direction()};
+      const Ray scaled{ray.origin, std::ldexp(1.0, exponent) * ray.direction};
+      const Hit hit = scene.cast(ray, 30.0);
+      const Hit same = scene.cast(scaled, 30.0);
+      ASSERT_EQ(hit.box, same.box);
+      ASSERT_EQ(hit.range, same.range);
+      ASSERT_EQ(hit.box, scene.castClosest(scaled, 30.0).box);
+      ASSERT_EQ(hit.hit, scene.castAny(scaled, 30.0));
+      ASSERT_EQ(scene.findAll(ray).size(), scene.findAll(scaled).size());
+      ASSERT_EQ(scene.findAll(Line{ray.origin, ray.direction}).size(),
+                scene.findAll(Line{scaled.origin, scaled.direction}).size());
+      hits += hit.hit ? 1 : 0;
+    }
+    EXPECT_GT(hits, 10U);
+    const QueryCounters work = queryCounters() - before;
+    EXPECT_LT(work.exact_decisions, 50U * 200U) << "not all thousand boxes of any query";
+  }
+}
+
+TEST(SceneCast, ADirectionThatCannotBeScaledExactlyIsStillRight) {
+  // 2^900 and 2^-1000: near 1 the latter would be 0, and the ray not go up.
+  const Ray ray{{0.0, 0.0, 0.0}, {std::ldexp(1.0, 900), 0.0, std::ldexp(1.0, -1000)}};
+  const AlignedBox on{{1.0, -1.0, 0.0}, {2.0, 1.0, 0.0}};
+  const AlignedBox above{{1.0, -1.0, std::ldexp(1.0, -1074)}, {2.0, 1.0, 1.0}};
+  EXPECT_FALSE(Scene({on, above}).cast(ray).hit) << "2^-1900 above the one, below the other";
+  EXPECT_FALSE(Scene({on, above}).castAny(ray));
+  EXPECT_TRUE(Scene({AlignedBox{{1.0, -1.0, 0.0}, {2.0, 1.0, 1.0}}}).castAny(ray));
 }
 
 }  // namespace
