@@ -34,10 +34,10 @@ bool isFartherThan(const Segment& segment, const Box& any, const DistanceBounds&
 
 /// A box that may be the nearest one.
 ///
-/// Not an aggregate: of one GCC clears all members first, also the room for exact numbers that are
-/// hardly ever there, of 600 bytes.
+/// With constructors of its own: for others GCC clears all members first, also the room for exact
+/// numbers that are hardly ever there, of 600 bytes.
 struct Nearby {
-  Nearby() = default;
+  Nearby() {}  // NOLINT(modernize-use-equals-default)
   Nearby(std::size_t number, const DistanceBounds& b) : box(number), bounds(b) {}
 
   std::size_t box = kNoBox;
@@ -61,9 +61,9 @@ bool isNearer(const Segment& segment, const SceneBoxes& boxes, Nearby& a, Nearby
   return order < 0 || (order == 0 && a.box < b.box);
 }
 
-/// A box within the radius. Not an aggregate either.
+/// A box within the radius, with constructors of its own too.
 struct Blocking {
-  Blocking() = default;
+  Blocking() {}  // NOLINT(modernize-use-equals-default)
   Blocking(std::size_t number, const NearestEstimate& e) : box(number), estimate(e) {}
 
   std::size_t box = kNoBox;
