@@ -77,6 +77,9 @@ void Scene::Impl::offerAll(FirstEntered<Ray>& first, double max_range, const Box
 
 Hit Scene::Impl::hitOf(const Ray& ray, double max_range, const BoxMask* mask,
                        const kernels::Found* found) const {
+  if (found != nullptr && found->count == 0 && tree.left_out().empty()) {
+    return {};
+  }
   FirstEntered<Ray> first(ray, boxes);
   offerAll(first, max_range, mask, found);
   if (!first.any()) {
@@ -119,12 +122,10 @@ ClosestBox Scene::Impl::decidedClosestOf(const Ray& ray, double max_range, const
   return {true, first.box(), first.lower(), first.upper()};
 }
 
-Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
-  return impl_->hitOf(ray, max_range, mask, nullptr);
-}
-
-ClosestBox Scene::castClosest(const Ray& ray, double max_range,
-                              const BoxMask* mask) const noexcept {
+/// Calls answer(found) with what the kernels find, or null where they leave it open.
+template <typename Answer>
+auto Scene::Impl::castByKernels(const Ray& ray, double max_range, const BoxMask* mask,
+                                Answer&& answer) const {
   kernels::Found found;
   Vector3 direction;
   bool too_many = false;
@@ -132,10 +133,23 @@ ClosestBox Scene::castClosest(const Ray& ray, double max_range,
     *static_cast<bool*>(context) = true;
     return -kInf;
   };
-  const bool taken = impl_->kernels.closest(impl_->view, rayQuery(ray, max_range, mask, direction),
-                                            found, give_up, &too_many);
+  const bool taken =
+      kernels.closest(view, rayQuery(ray, max_range, mask, direction), found, give_up, &too_many);
   countWork(found.work);
-  return impl_->closestOf(ray, max_range, mask, taken && !too_many ? &found : nullptr);
+  return answer(taken && !too_many ? &found : nullptr);
+}
+
+Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
+  return impl_->castByKernels(ray, max_range, mask, [&](const kernels::Found* found) {
+    return impl_->hitOf(ray, max_range, mask, found);
+  });
+}
+
+ClosestBox Scene::castClosest(const Ray& ray, double max_range,
+                              const BoxMask* mask) const noexcept {
+  return impl_->castByKernels(ray, max_range, mask, [&](const kernels::Found* found) {
+    return impl_->closestOf(ray, max_range, mask, found);
+  });
 }
 
 bool Scene::castAny(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
