@@ -44,6 +44,7 @@ Word BoxStore::hear(std::size_t topic_index, BoxChange&& change, const ros::Time
     item.first_word = word.number;
   }
   item.latest_word = word.number;
+  item.latest_stamp = word.change.stamp;
   item.latest_expiry = word.expiry;
   item.problem = word.change.problem;
   if (word.change.object) {
@@ -200,14 +201,36 @@ std::size_t BoxStore::expire(const ros::Time& now) {
   return expired;
 }
 
-void BoxStore::startClock(const ros::Time& now) {
-  next_expiry_ = startedAt(now, next_expiry_);
+void BoxStore::keepLatest(std::size_t topic_index, const std::function<bool(const Item&)>& keep) {
+  Topic& topic = topics_.at(topic_index);
+  last_item_ = nullptr;
+  for (auto items = topic.items.begin(); items != topic.items.end();) {
+    for (auto next = items->second.begin(); next != items->second.end();) {
+      Item& item = next->second;
+      if (!keep(item)) {
+        forget(topic, item);
+        next = items->second.erase(next);
+        continue;
+      }
+      item.first_word = item.latest_word;
+      if (item.placed_word < item.latest_word && !item.boxes.empty()) {
+        ++boxes_revision_;
+        item.boxes.clear();
+      }
+      ++next;
+    }
+    items = items->second.empty() ? topic.items.erase(items) : std::next(items);
+  }
+}
+
+void BoxStore::moveClock(std::int64_t later) {
+  next_expiry_ = movedBy(later, next_expiry_);
   for (Topic& topic : topics_) {
     for (auto& items : topic.items) {
       for (auto& entry : items.second) {
         Item& item = entry.second;
-        item.latest_expiry = startedAt(now, item.latest_expiry);
-        item.placed_expiry = startedAt(now, item.placed_expiry);
+        item.latest_expiry = movedBy(later, item.latest_expiry);
+        item.placed_expiry = movedBy(later, item.placed_expiry);
       }
     }
   }

@@ -6,6 +6,7 @@
 #include "ros/box_source.h"
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -19,9 +20,9 @@ namespace box_query {
 /// No end of life.
 constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
-/// The end of a life that began at time 0, if it begins at `now` instead. [ns]
-inline std::int64_t startedAt(const ros::Time& now, std::int64_t expiry) {
-  return expiry == kForever ? kForever : expiry + static_cast<std::int64_t>(now.toNSec());
+/// The end of a life that began `later` than was thought. [ns]
+inline std::int64_t movedBy(std::int64_t later, std::int64_t expiry) {
+  return expiry == kForever ? kForever : expiry + later;
 }
 
 /// One kSet change that the store has been told of, and that is still to be placed.
@@ -39,6 +40,7 @@ struct Item {
   std::uint64_t first_word = 0;
   std::uint64_t latest_word = 0;
   std::uint64_t placed_word = 0;  ///< 0: none yet
+  ros::Time latest_stamp;
   std::int64_t latest_expiry = kForever;
   std::int64_t placed_expiry = kForever;
 
@@ -96,8 +98,11 @@ class BoxStore {
   /// Forgets what has ended by `now`. @return the number of boxes that were placed or waiting.
   std::size_t expire(const ros::Time& now);
 
-  /// Lifetimes that began at time 0 begin at `now`.
-  void startClock(const ros::Time& now);
+  /// Forgets what `keep` does not accept of a topic, and all but the latest word of the rest.
+  void keepLatest(std::size_t topic, const std::function<bool(const Item&)>& keep);
+
+  /// All lifetimes began so much later. [ns]
+  void moveClock(std::int64_t later);
 
   const Items& items(std::size_t topic) const { return topics_.at(topic).items; }
   std::size_t waiting(std::size_t topic) const { return topics_.at(topic).waiting; }

@@ -69,6 +69,7 @@ void BoxTracker::receive(std::size_t topic_index, const BoxSource* source, Decod
   Topic& topic = topics_.at(topic_index);
   ++changes_;
   ++counts_.messages;
+  noteArrival(Clock::now());
   dropIfStale(topic_index, now);  // nobody may have looked since it was
   topic.source = source;
   counts_.ignored_markers += message.ignored;
@@ -299,35 +300,6 @@ void BoxTracker::followLockedFrames() {
       ++moves_;
     }
   }
-}
-
-void BoxTracker::restart() {
-  for (std::size_t topic = 0; topic < topics_.size(); ++topic) {
-    store_.clear(topic);
-    topics_[topic].state.heard = false;
-    topics_[topic].state.last_message = ros::Time();
-    topics_[topic].refusal.clear();
-  }
-  waiting_.clear();
-  locked_.clear();
-  newest_stamp_ = ros::Time();
-  unstamped_ = false;
-  ++changes_;
-}
-
-void BoxTracker::startClock(const ros::Time& now) {
-  for (Topic& topic : topics_) {
-    if (topic.state.heard) {
-      topic.state.last_message = now;
-    }
-  }
-  store_.startClock(now);
-  waiting_.startClock(now);
-  if (unstamped_) {
-    unstamped_ = false;
-    noteStamp(ros::Time(), now);
-  }
-  ++changes_;
 }
 
 void BoxTracker::noteStamp(const ros::Time& stamp, const ros::Time& now) {

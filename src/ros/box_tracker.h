@@ -8,6 +8,7 @@
 #include <box_query/ros/scene_monitor.h>
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <set>
@@ -56,8 +57,10 @@ class BoxTracker {
   void expire(const ros::Time& now);
   /// Looks up the latest poses of frames that boxes are locked to.
   void followLockedFrames();
-  /// Forgets all boxes, and that topics were heard.
-  void restart();
+  /// The ROS clock has gone back, from `before` to `now`: forgets all boxes, and that topics were
+  /// heard. What came just before that was noticed stays if its stamp is of the new time: messages
+  /// overtake those of /clock.
+  void turnClockBack(const ros::Time& before, const ros::Time& now, Clock::time_point noticed);
   /// The ROS clock has started, at `now`: what came before, at time 0, counts as received now.
   /// Whether a topic's or the clock's first message comes first is chance.
   void startClock(const ros::Time& now);
@@ -80,6 +83,12 @@ class BoxTracker {
     std::string latest_type;  ///< of the publisher that came last, if some cannot be heard
   };
 
+  struct Arrival {
+    Clock::time_point time;
+    std::uint64_t last_word;  ///< before it
+  };
+
+  void noteArrival(Clock::time_point now);
   void dropIfStale(std::size_t topic, const ros::Time& now);
   void apply(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now);
   void hear(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now);
@@ -104,6 +113,7 @@ class BoxTracker {
   std::map<std::string, std::optional<FramePose>> locked_;  ///< latest poses of locked frames
   std::set<std::string> used_frames_;                       ///< of them, those in the draft
   std::size_t drafted_boxes_ = 0;                           ///< in the last draft
+  std::deque<Arrival> arrivals_;                            ///< of the latest messages
   ros::Time newest_stamp_;
   bool unstamped_ = false;  ///< something without a stamp came before the clock started
   std::uint64_t changes_ = 0;

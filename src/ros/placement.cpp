@@ -92,16 +92,11 @@ void WaitingList::purge(const std::function<bool(const Word&)>& wanted) {
   }
 }
 
-void WaitingList::clear() {
-  words_.clear();
-  boxes_ = 0;
-}
-
-void WaitingList::startClock(const ros::Time& now) {
+void WaitingList::moveClock(const ros::Time& now, std::int64_t later) {
   for (auto& [place, words] : words_) {
     for (Waiting& waiting : words) {
       waiting.word.received = now;
-      waiting.word.expiry = startedAt(now, waiting.word.expiry);
+      waiting.word.expiry = movedBy(later, waiting.word.expiry);
     }
   }
 }

@@ -63,9 +63,8 @@ class WaitingList {
   void giveUp(Clock::time_point now, const std::function<void(Word&&)>& take);
   /// Drops the words that nobody wants any more.
   void purge(const std::function<bool(const Word&)>& wanted);
-  void clear();
-  /// Words that were received at time 0 count as received at `now`.
-  void startClock(const ros::Time& now);
+  /// All words count as received at `now`, which is so much later than was thought. [ns]
+  void moveClock(const ros::Time& now, std::int64_t later);
 
   /// The first place that a word of that topic waits for, or null.
   const Place* firstPlace(std::size_t topic, const std::function<bool(const Word&)>& wanted) const;

@@ -206,7 +206,7 @@ void SceneMonitor::Impl::noticeTime() {
     ROS_WARN_STREAM("box_query: time went back from " << now << " to " << time
                                                       << "; boxes and transforms are forgotten");
     transforms.clear();
-    tracker.restart();
+    tracker.turnClockBack(now, time, Clock::now());
   }
   if (now.isZero() && !time.isZero()) {
     tracker.startClock(time);

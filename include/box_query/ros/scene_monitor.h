@@ -108,7 +108,8 @@ struct MonitorStatistics {
 /// of their message (0: the latest), those with frame_locked anew in every snapshot. One leading
 /// slash of a frame is dropped, since tf2 refuses it. While what a topic says of a box is bad or
 /// waits for its transform, the box stays where it was, and the scene is incomplete. If the ROS
-/// clock goes back, all boxes and transforms are forgotten.
+/// clock goes back, all transforms are forgotten, and all boxes but those that have just come with
+/// a stamp of the new time.
 class SceneMonitor {
  public:
   /// Topics are resolved in the namespace of `nh`.
