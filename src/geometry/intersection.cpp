@@ -23,7 +23,7 @@ bool test(const T& linear, const OrientedBox& box) {
 template <typename T, typename BoxType>
 Intersection findInOwnFrame(const T& linear, const BoxType& box) {
   const DoubleComponent component = doubleComponent(linear);
-  Solution solution = solve(linear, component, box, prepared(box));
+  Solution solution = solve(linear, component, box);
   return intersectionOf(linear, component, box, solution);
 }
 
@@ -45,7 +45,7 @@ Intersection find(const T& linear, const OrientedBox& box) {
 
 template <typename T, typename BoxType>
 IntersectionRanges ranges(const T& linear, const BoxType& box) {
-  Solution solution = solve(linear, doubleComponent(linear), box, prepared(box));
+  Solution solution = solve(linear, doubleComponent(linear), box);
   if (solution.num_points == 0) {
     return {};
   }

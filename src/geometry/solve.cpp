@@ -231,18 +231,17 @@ bool meetsByStages(const T& linear, const BoxType& box, const Prepared<SlabsType
   return meetsSlowly(linear, component, box);
 }
 
-template <typename T, typename BoxType, typename SlabsType>
-Solution solve(const T& linear, const DoubleComponent& component, const BoxType& box,
-               const Prepared<SlabsType>& prepared) {
+template <typename T, typename BoxType>
+Solution solve(const T& linear, const DoubleComponent& component, const BoxType& box) {
   Solution solution;  // the only one, made where the caller wants it
-  const bool compact = component.compact && prepared.compact;
-  if (component.moderate && prepared.moderate) {
+  const bool compact = component.compact && isCompact(box);
+  if (component.moderate && isModerate(box)) {
     if constexpr (std::is_same_v<BoxType, OrientedBox>) {
       if (compact && solveByKernel(linear, component, box, solution)) {
         return solution;
       }
     }
-    const SlabTimes times = slabTimes(component, prepared.slabs);
+    const SlabTimes times = slabTimes(component, doubleSlabs(box));
     const Enclosure e = enclose<T>(times);
     if (e.isMiss()) {
       return solution;
@@ -366,8 +365,7 @@ Vector3 pointAt(const T& linear, const DoubleComponent& component, const BoxType
 
 #define BOX_QUERY_INSTANTIATE(T, BoxType, SlabsType)                                               \
   template bool meetsByStages(const T&, const BoxType&, const Prepared<SlabsType>&);               \
-  template Solution solve(const T&, const DoubleComponent&, const BoxType&,                        \
-                          const Prepared<SlabsType>&);                                             \
+  template Solution solve(const T&, const DoubleComponent&, const BoxType&);                       \
   template double roundedParameter(const T&, const BoxType&, Solution&, End);                      \
   template double roundedRange(const T&, const BoxType&, Solution&, End, const DoubleDouble&);     \
   template bool isEnteredWithin(const T&, const BoxType&, Solution&, double, const DoubleDouble&); \

@@ -58,9 +58,9 @@ struct Solution {
   std::optional<exact::Clip> exactly;
 };
 
-template <typename T, typename BoxType, typename SlabsType>
-Solution solve(const T& linear, const DoubleComponent& component, const BoxType& box,
-               const Prepared<SlabsType>& prepared);
+/// Of a box that is prepared only if it has to be.
+template <typename T, typename BoxType>
+Solution solve(const T& linear, const DoubleComponent& component, const BoxType& box);
 
 /// -1, 0 or 1 as the first box is entered before, with or after the second.
 template <typename T>

@@ -35,6 +35,7 @@ Vector3 outwardNormal(FaceSet faces, const Box& box, bool is_aligned) {
 }
 
 /// The hit on a box, rounded; a miss if that is out of range.
+/// @param max_range +inf if the hit is known to be in range
 Hit hitOf(const Ray& ray, const DoubleComponent& component, std::size_t index, const Box& box,
           const Box& simplest, Solution& solution, double max_range) {
   const exact::DoubleDouble length = directionLength(ray);
@@ -84,6 +85,9 @@ Hit Scene::Impl::hitOf(const Ray& ray, double max_range, const BoxMask* mask,
   offerAll(first, max_range, mask, found);
   if (!first.any()) {
     return {};
+  }
+  if (found != nullptr && first.upper() <= found->t_inside) {
+    max_range = kInf;
   }
   return box_query::hitOf(ray, first.component(), first.box(), boxes.given()[first.box()],
                           boxes.simplest(first.box()), first.solution(), max_range);
@@ -154,8 +158,7 @@ ClosestBox Scene::castClosest(const Ray& ray, double max_range,
 
 bool Scene::castAny(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
   return impl_->meetsAny(ray, max_range, mask, [&](std::size_t i) {
-    Solution solution =
-        solveBox(ray, doubleComponent(ray), impl_->boxes.simplest(i), impl_->boxes.prepared(i));
+    Solution solution = solveBox(ray, doubleComponent(ray), impl_->boxes.simplest(i));
     return solution.num_points > 0 &&
            std::visit(
                [&](const auto& box) {

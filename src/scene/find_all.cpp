@@ -18,7 +18,7 @@ template <typename T>
 bool isEnteredBefore(const T& linear, const DoubleComponent& component, const Box& a,
                      const Box& b) {
   const auto solveBox = [&](const Box& box) {
-    return std::visit([&](const auto& x) { return solve(linear, component, x, prepared(x)); }, box);
+    return std::visit([&](const auto& x) { return solve(linear, component, x); }, box);
   };
   Solution at_a = solveBox(a);
   Solution at_b = solveBox(b);

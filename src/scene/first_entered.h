@@ -16,15 +16,11 @@
 namespace box_query {
 
 template <typename T>
-Solution solveBox(const T& linear, const DoubleComponent& component, const Box& box,
-                  const PreparedBox& prepared) {
-  const bool moderate = prepared.kind != PreparedBox::Kind::kExactOnly;
+Solution solveBox(const T& linear, const DoubleComponent& component, const Box& box) {
   if (const auto* aligned = std::get_if<AlignedBox>(&box)) {
-    return solve(linear, component, *aligned,
-                 Prepared<AlignedSlabs>{prepared.aligned, moderate, prepared.compact});
+    return solve(linear, component, *aligned);
   }
-  return solve(linear, component, *std::get_if<OrientedBox>(&box),
-               Prepared<OrientedSlabs>{prepared.oriented, moderate, prepared.compact});
+  return solve(linear, component, *std::get_if<OrientedBox>(&box));
 }
 
 /// Where the face of a box is on the same axis of the world, exactly: nothing if it is not across
@@ -153,7 +149,7 @@ class FirstEntered {
 
   Solution& solutionOf(Entry& e) {
     if (!e.solution) {
-      e.solution = solveBox(linear_, component(), boxes_.simplest(e.box), boxes_.prepared(e.box));
+      e.solution = solveBox(linear_, component(), boxes_.simplest(e.box));
     }
     return *e.solution;
   }

@@ -33,7 +33,7 @@ struct LibraryRounded {
   static Prepared prepare(const OrientedBox& box) { return libraryBox(box); }
   template <typename Component>
   static Answer ask(const Component& component, const Prepared& box) {
-    Solution solution = solve(component, doubleComponent(component), box.box(), box.filter);
+    Solution solution = solve(component, doubleComponent(component), box.box());
     if (solution.num_points == 0) {
       return {};
     }
@@ -57,7 +57,7 @@ struct LibraryEnclosed {
                     const box_query::Prepared<OrientedSlabs>& filter) {
     const DoubleComponent doubles = doubleComponent(component);
     if (!doubles.moderate || !filter.moderate) {
-      Solution solution = solve(component, doubles, box, filter);
+      Solution solution = solve(component, doubles, box);
       const bool hit = solution.num_points > 0;
       const double t = hit ? roundedParameter(component, box, solution, End::kEnter) : 0.0;
       return {hit, t, t};
