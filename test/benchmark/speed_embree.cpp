@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <dlfcn.h>
+#include <tbb/global_control.h>
 
 namespace box_query::benchmark {
 namespace {
@@ -15,7 +16,7 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr std::size_t kStream = 256;
 
 struct DeviceOwner {
-  RTCDevice device = rtcNewDevice("threads=1");
+  RTCDevice device = rtcNewDevice(nullptr);
   ~DeviceOwner() { rtcReleaseDevice(device); }
 };
 
@@ -141,6 +142,8 @@ void Embree::commit(RTCGeometry geometry) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_, geometry);
   rtcReleaseGeometry(geometry);
+  // Its own option for this would hold for all that the process does with TBB.
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   rtcCommitScene(scene_);
 }
 
