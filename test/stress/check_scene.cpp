@@ -24,11 +24,47 @@ bool same(const Vector3& a, const Vector3& b) {
   return true;
 }
 
+bool same(const Hit& a, const Hit& b) {
+  return a.hit == b.hit && a.box == b.box && a.range == b.range && a.t == b.t &&
+         (a.exit_range == b.exit_range || !a.hit) && a.started_inside == b.started_inside &&
+         a.entered == b.entered && same(a.point, b.point) && same(a.normal, b.normal);
+}
+
+Box movedBy(const Box& any, const Vector3& by) {
+  if (const auto* box = std::get_if<AlignedBox>(&any)) {
+    return AlignedBox{box->min + by, box->max + by};
+  }
+  OrientedBox box = std::get<OrientedBox>(any);
+  box.center += by;
+  return box;
+}
+
+/// A scene of these boxes: new, or made from one in which they had other numbers, some were
+/// elsewhere and some were not there.
+Scene sceneOf(const std::vector<Box>& boxes, Random& random) {
+  if (random.chance(0.5)) {
+    return Scene(boxes);
+  }
+  std::vector<Box> before;
+  std::vector<std::size_t> previous(boxes.size(), kNoBox);
+  for (std::size_t i = boxes.size(); i-- > 0;) {
+    if (random.chance(0.05)) {
+      before.push_back(boxes[i]);  // gone since
+    }
+    if (random.chance(0.95)) {
+      previous[i] = before.size();
+      before.push_back(random.chance(0.3) ? movedBy(boxes[i], random.uniformVector(-1.0, 1.0))
+                                          : boxes[i]);
+    }
+  }
+  return Scene(before).updated(boxes, previous);
+}
+
 /// One scene, as the library and as the oracle have it.
 class SceneCheck {
  public:
   SceneCheck(const SceneSample& sample, Random& random, Tally& tally)
-      : sample_(sample), random_(random), tally_(tally), scene_(sample.boxes) {
+      : sample_(sample), random_(random), tally_(tally), scene_(sceneOf(sample.boxes, random)) {
     exact_boxes_.assign(sample.boxes.begin(), sample.boxes.end());
     if (random.chance(0.4)) {
       mask_.emplace(sample.boxes.size());
@@ -47,6 +83,7 @@ class SceneCheck {
       checkFindAll(component.segment(), "findAll(Segment)");
       checkSegment(component.segment());
     }
+    checkCastsTogether();
   }
 
  private:
@@ -108,6 +145,38 @@ class SceneCheck {
            closest.hit, within);
     expect(closest.t_lower <= limited.t && limited.t <= closest.t_upper,
            "enclosure of castClosest" + argument, closest.t_lower, limited.t);
+  }
+
+  /// Rays that are cast together, each with limits of its own, against each alone.
+  void checkCastsTogether() {
+    std::vector<Ray> rays;
+    std::vector<double> limits;
+    for (const Sample& component : sample_.components) {
+      const double range = scene_.cast(component.ray(), kInf, mask()).range;
+      for (const double limit : {kInf, random_.nudged(range, 1), random_.uniform(0.0, 10.0)}) {
+        rays.push_back(component.ray());
+        limits.push_back(limit >= 0.0 ? limit : 0.0);
+      }
+    }
+    const std::size_t count = rays.size();
+    const MaxRanges each(limits.data());
+    std::vector<Hit> hits(count);
+    std::vector<ClosestBox> closest(count);
+    std::vector<std::uint8_t> any(count);
+    scene_.cast(rays.data(), count, hits.data(), each, mask());
+    scene_.castClosest(rays.data(), count, closest.data(), each, mask());
+    scene_.castAny(rays.data(), count, any.data(), each, mask());
+    for (std::size_t i = 0; i < count; ++i) {
+      component_ = &sample_.components[i / 3];
+      const std::string argument = " together (max_range " + hex(limits[i]) + ")";
+      const Hit alone = scene_.cast(rays[i], limits[i], mask());
+      expect(same(hits[i], alone), "cast" + argument, hits[i].t, alone.t);
+      const ClosestBox& c = closest[i];
+      expect(
+          c.hit == alone.hit && c.box == alone.box && c.t_lower <= alone.t && alone.t <= c.t_upper,
+          "castClosest" + argument, c.t_lower, alone.t);
+      expect((any[i] != 0) == alone.hit, "castAny" + argument, any[i], alone.hit);
+    }
   }
 
   static bool isWithin(const oracle::Bound& t, const oracle::ExactComponent& ray, double limit) {
