@@ -25,6 +25,7 @@
 
 #include <ros/console.h>
 #include <ros/init.h>
+#include <ros/names.h>
 #include <ros/this_node.h>
 
 namespace box_query {
@@ -89,6 +90,7 @@ struct SceneMonitor::Impl {
   void tick();
   bool queriedLately();
 
+  const ros::NodeHandle nh;
   const Parameters parameters;
   Bell bell;                           ///< for the worker
   std::atomic<bool> tf_wanted{false};  ///< transforms ring the bell
@@ -120,7 +122,8 @@ struct SceneMonitor::Impl {
 };
 
 SceneMonitor::Impl::Impl(const ros::NodeHandle& node, const Parameters& given)
-    : parameters(resolved(node, given)),
+    : nh(node),
+      parameters(resolved(node, given)),
       transforms(node, ros::Duration(parameters.transform_history),
                  [this] {
                    if (tf_wanted) {
@@ -344,6 +347,11 @@ SnapshotPtr SceneMonitor::watchedScene() {
 SnapshotPtr SceneMonitor::sceneById(std::uint64_t id) const {
   const SnapshotPtr latest = impl_->latest.read(snapshotOf);
   return latest->id == id ? latest : impl_->kept.find(id);
+}
+
+std::string SceneMonitor::resolveTopic(const std::string& topic) const {
+  std::string error;
+  return ros::names::validate(topic, error) ? impl_->nh.resolveName(topic) : topic;
 }
 
 std::string SceneMonitor::lookUpTransform(const std::string& target, const std::string& source,

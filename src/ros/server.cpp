@@ -73,6 +73,15 @@ FrameChange Server::frameOf(const std_msgs::Header& header) const {
   return FrameChange(transform.transform);
 }
 
+template <class Request>
+void Server::resolveTopics(Request& request) const {
+  for (auto* topics : {&request.topics, &request.ignore_topics}) {
+    for (std::string& topic : *topics) {
+      topic = monitor_.resolveTopic(topic);
+    }
+  }
+}
+
 template <class Request, class Response>
 void Server::answerNow(const Request& request, Response& response) {
   check(request, static_cast<std::size_t>(monitor_.parameters().max_queries_per_call));
@@ -106,11 +115,12 @@ void Server::answerNow(const GetSceneRequest& request, GetSceneResponse& respons
 }
 
 template <class Request, class Response>
-void Server::handle(const CheckedRequest<Request>& checked, Response& response) {
+void Server::handle(CheckedRequest<Request>& checked, Response& response) {
   try {
     if (!checked.problem.empty()) {
       throw std::runtime_error(checked.problem);
     }
+    resolveTopics(checked.request);
     answerNow(checked.request, response);
     response.success = true;
     ++answered_;

@@ -50,8 +50,11 @@ class Server {
 
   /// Answers a request or refuses it; never throws for what a request says.
   template <class Request, class Response>
-  void handle(const CheckedRequest<Request>& checked, Response& response);
+  void handle(CheckedRequest<Request>& checked, Response& response);
 
+  /// A nodelet has a namespace of its own: what the filters know is that of the process.
+  template <class Request>
+  void resolveTopics(Request& request) const;
   template <class Request, class Response>
   void answerNow(const Request& request, Response& response);
   void answerNow(const GetSceneRequest& request, GetSceneResponse& response);

@@ -95,6 +95,26 @@ TEST(Nodelet, IsLaunchedIntoAManager) {
   EXPECT_NE(scene.response.reason.find("/carts"), std::string::npos) << scene.response.reason;
 }
 
+TEST(Nodelet, KnowsTopicsByTheirNamesInItsNamespace) {
+  ArrayTalker talker("/robot/boxes");
+  ASSERT_TRUE(talker.isHeard());
+  talker.say(array({cube("map", 1, 5)}));
+  CastRay service;
+  service.request = ray("map", point(0, 0, 0), vector(1, 0, 0));
+  service.request.topics = {"boxes"};
+  ASSERT_TRUE(eventually([&] {
+    return ros::service::call("/robot/box_query/cast_ray", service) && service.response.complete;
+  }));
+  EXPECT_TRUE(service.response.hit);
+  EXPECT_EQ(service.response.box_topic, "/robot/boxes");
+  EXPECT_EQ(service.response.message, "");
+  service.request.topics.clear();
+  service.request.ignore_topics = {"boxes"};
+  ASSERT_TRUE(ros::service::call("/robot/box_query/cast_ray", service) ||
+              ros::service::call("/robot/box_query/cast_ray", service));
+  EXPECT_FALSE(service.response.hit);
+}
+
 TEST(Nodelet, LeavesWhileItIsAsked) {
   ArrayTalker talker("boxes");
   const Client few(1);

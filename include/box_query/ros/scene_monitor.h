@@ -139,6 +139,10 @@ class SceneMonitor {
   /// Parameters::kept_scenes and max_kept_boxes allow, or null.
   SnapshotPtr sceneById(std::uint64_t id) const;
 
+  /// A topic's name in full, as snapshots have it, in the namespace and with the remappings of the
+  /// node handle; one that is no name as it is.
+  std::string resolveTopic(const std::string& topic) const;
+
   /// Pose of `source` in `target` at `stamp` (0: latest), waiting for it up to `timeout` seconds of
   /// wall time, whatever the ROS clock does. Equal frames need no tf.
   /// @return an empty string, or a sentence that says what was missing and what to do.
