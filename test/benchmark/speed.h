@@ -43,7 +43,8 @@ Workload recordedScenes(const std::string& directory, std::size_t every, std::si
 /// The same, scenes of one file together until they have 130 boxes.
 Workload mergedScenes(const std::string& directory, std::size_t every, std::size_t rays);
 
-/// A question about a scene and a ray; kBuild: how long the scene takes to be made.
+/// A question about a scene and a ray; kBuild: how long the scene takes to be made; kUpdate: to be
+/// made from one where all boxes were a little elsewhere.
 enum class Question {
   kClosest30,
   kClosest,
@@ -52,11 +53,12 @@ enum class Question {
   kAll30,
   kSegment,
   kClearance,
-  kBuild
+  kBuild,
+  kUpdate
 };
 constexpr Question kQuestions[] = {Question::kClosest30, Question::kClosest, Question::kRounded30,
                                    Question::kAny30,     Question::kAll30,   Question::kSegment,
-                                   Question::kClearance, Question::kBuild};
+                                   Question::kClearance, Question::kBuild,   Question::kUpdate};
 const char* nameOf(Question question);
 
 /// How a question is asked: a ray a call; many rays a call on one thread; the same on one and on
@@ -101,6 +103,10 @@ class SpeedMethod {
   /// Asks about all rays, so that what is timed is one call, and returns a sum of the answers.
   virtual std::uint64_t pass(Question question, const std::vector<Ray>& rays) const = 0;
 
+  virtual bool canUpdate() const { return false; }
+  /// Takes the same boxes elsewhere, and forgets about it. Returns a sum.
+  virtual std::uint64_t update(const std::vector<OrientedBox>& /*moved*/) const { return 0; }
+
   /// Ways to ask about many rays in one call that are worth a comparison.
   virtual std::vector<std::string> batchWays(Question /*question*/) const { return {}; }
   /// @param answers as many as rays
@@ -144,7 +150,8 @@ struct SpeedRow {
   Question question;
   Mode mode;
   std::string method;
-  Timing timing;  ///< Ratios: to box_query, of kThreads on two threads. Of kBuild, a box.
+  Timing
+      timing;  ///< Ratios: to box_query, of kThreads on two threads. Of kBuild and kUpdate, a box.
   /// Answers that were compared with exact ones.
   std::size_t asked = 0;
   std::size_t hits = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "benchmark/speed.h"
 #include "benchmark/speed_truth.h"
+#include "reference/sampler.h"
 
 #include <algorithm>
 
@@ -108,6 +109,33 @@ class Measurement {
     time(Question::kBuild, Mode::kSingle, contenders, passes, boxes_);
   }
 
+  void update() {
+    constexpr double kStep = 0.01;  // [m], about what moves between two messages of a sensor
+    std::vector<std::vector<OrientedBox>> moved;
+    reference::Sampler sampler(11);
+    for (const SpeedScene& scene : workload_.scenes) {
+      moved.push_back(scene.boxes);
+      for (OrientedBox& box : moved.back()) {
+        box.center += sampler.vector(-kStep, kStep);
+      }
+    }
+    std::vector<Contender> contenders;
+    std::vector<Pass> passes;
+    for (std::size_t m = 0; m < kinds_.size(); ++m) {
+      if (!methods_[m].empty() && methods_[m].front()->canUpdate()) {
+        contenders.push_back({m, kinds_[m].name});
+        passes.push_back([&, m] {
+          std::uint64_t sum = 0;
+          for (std::size_t s = 0; s < moved.size(); ++s) {
+            sum += methods_[m][s]->update(moved[s]);
+          }
+          return sum;
+        });
+      }
+    }
+    time(Question::kUpdate, Mode::kSingle, contenders, passes, boxes_);
+  }
+
   std::vector<SpeedRow> take() { return std::move(rows_); }
 
  private:
@@ -201,6 +229,8 @@ std::vector<SpeedRow> measureSpeed(const Workload& workload, const SpeedOptions&
   for (const Question question : kQuestions) {
     if (question == Question::kBuild) {
       measurement.build();
+    } else if (question == Question::kUpdate) {
+      measurement.update();
     } else {
       measurement.single(question);
     }

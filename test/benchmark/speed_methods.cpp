@@ -5,6 +5,7 @@
 #include <box_query/batch.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace box_query::benchmark {
 namespace {
@@ -12,7 +13,9 @@ namespace {
 class Ours final : public SpeedMethod {
  public:
   explicit Ours(const std::vector<OrientedBox>& boxes)
-      : scene_(std::vector<Box>(boxes.begin(), boxes.end())) {}
+      : scene_(std::vector<Box>(boxes.begin(), boxes.end())), same_(boxes.size()) {
+    std::iota(same_.begin(), same_.end(), std::size_t{0});
+  }
 
   bool canAnswer(Question /*question*/) const override { return true; }
   SpeedAnswer ask(Question question, const Ray& ray) const override {
@@ -34,12 +37,19 @@ class Ours final : public SpeedMethod {
         return {clearance.box, clearance.distance};
       }
       case Question::kBuild:
+      case Question::kUpdate:
         break;
     }
     return {};
   }
   std::uint64_t pass(Question question, const std::vector<Ray>& rays) const override {
     return passOf(*this, question, rays);
+  }
+
+  bool canUpdate() const override { return true; }
+  std::uint64_t update(const std::vector<OrientedBox>& moved) const override {
+    const Scene scene = scene_.updated({moved.begin(), moved.end()}, same_);
+    return scene.update().moved;
   }
 
   std::vector<std::string> batchWays(Question /*question*/) const override {
@@ -92,6 +102,7 @@ class Ours final : public SpeedMethod {
   }
 
   Scene scene_;
+  std::vector<std::size_t> same_;  ///< Each box is the one that it was.
 };
 
 }  // namespace
@@ -114,6 +125,8 @@ const char* nameOf(Question question) {
       return "clearance of 2 m";
     case Question::kBuild:
       return "build, a box";
+    case Question::kUpdate:
+      return "update, a box";
   }
   return "";
 }
