@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Four doubles, eight and sixteen floats as arrays: what the compiler makes of them is up to it.
+// Four doubles as an array, eight and sixteen floats by four: what the compiler makes of them is up
+// to it.
 
 struct Double4 {
   double v[4];
@@ -146,42 +147,62 @@ static inline float aboveInverseRoot(float x) {
   return 1.0F / std::sqrt(x) * (1.0F + 0x1p-10F);
 }
 
+/// Four floats, or what comparing them says: GCC and Clang make of it what the CPU has.
+using Float4 [[gnu::vector_size(16)]] = float;
+using Int4 [[gnu::vector_size(16)]] = std::int32_t;
+
+static inline Float4 quad(float x) {
+  return Float4{x, x, x, x};
+}
+static inline Int4 bitsOf(Float4 a) {
+  return reinterpret_cast<Int4>(a);
+}
+static inline Float4 floatOf(Int4 bits) {
+  return reinterpret_cast<Float4>(bits);
+}
+
 template <int kLanes>
 struct Floats {
-  float v[kLanes];
+  Float4 v[kLanes / 4];
 };
 using Float16 = Floats<kSlots>;
 using Float8 = Floats<kBlockSlots>;
 
 template <int kLanes, typename Function>
 static inline Floats<kLanes> each(Function&& f) {
-  Floats<kLanes> result;
-  for (int i = 0; i < kLanes; ++i) {
-    result.v[i] = f(i);
+  if constexpr (kLanes == 8) {
+    return {{f(0), f(1)}};
+  } else {
+    return {{f(0), f(1), f(2), f(3)}};
   }
-  return result;
+}
+template <int kLanes>
+static inline Floats<kLanes> load(const float* p) {
+  Floats<kLanes> a;
+  __builtin_memcpy(&a, p, sizeof(a));
+  return a;
 }
 static inline Float16 load16(const float* p) {
-  return each<kSlots>([&](int i) { return p[i]; });
+  return load<kSlots>(p);
 }
 static inline Float8 load8(const float* p) {
-  return each<kBlockSlots>([&](int i) { return p[i]; });
+  return load<kBlockSlots>(p);
 }
 static inline Float16 all16(float x) {
-  return each<kSlots>([&](int) { return x; });
+  return each<kSlots>([&](int) { return quad(x); });
 }
 static inline Float8 all8(float x) {
-  return each<kBlockSlots>([&](int) { return x; });
+  return each<kBlockSlots>([&](int) { return quad(x); });
+}
+template <int kLanes>
+static inline void store(float* p, const Floats<kLanes>& a) {
+  __builtin_memcpy(p, &a, sizeof(a));
 }
 static inline void store16(float* p, const Float16& a) {
-  for (int i = 0; i < kSlots; ++i) {
-    p[i] = a.v[i];
-  }
+  store(p, a);
 }
 static inline void store8(float* p, const Float8& a) {
-  for (int i = 0; i < kBlockSlots; ++i) {
-    p[i] = a.v[i];
-  }
+  store(p, a);
 }
 /// a * b + c, rounded once or twice.
 template <int kLanes>
@@ -206,23 +227,31 @@ static inline Floats<kLanes> operator/(const Floats<kLanes>& a, const Floats<kLa
   return each<kLanes>([&](int i) { return a.v[i] / b.v[i]; });
 }
 static inline Float8 magnitude(const Float8& a) {
-  return each<kBlockSlots>([&](int i) { return std::fabs(a.v[i]); });
+  return each<kBlockSlots>([&](int i) { return floatOf(bitsOf(a.v[i]) & ~bitsOf(quad(-0.0F))); });
 }
 /// a times -1 where b is negative.
 static inline Float8 withSignOf(const Float8& a, const Float8& b) {
-  return each<kBlockSlots>([&](int i) { return std::signbit(b.v[i]) ? -a.v[i] : a.v[i]; });
+  return each<kBlockSlots>(
+      [&](int i) { return floatOf(bitsOf(a.v[i]) ^ (bitsOf(b.v[i]) & bitsOf(quad(-0.0F)))); });
 }
 /// a / b; an estimate would do.
 static inline Float16 roughQuotient(const Float16& a, const Float16& b) {
   return a / b;
 }
-/// a / sqrt(b), off by less than 8u of it.
+/// a / sqrt(b) by Newton's method from half the exponent, off by less than 8u of it.
 static inline Float16 overRoot(const Float16& a, const Float16& b) {
-  return each<kSlots>([&](int i) { return a.v[i] / std::sqrt(b.v[i]); });
+  return each<kSlots>([&](int i) {
+    const Float4 half_b = b.v[i] * 0.5F;
+    Float4 r = floatOf(0x5f375a86 - (bitsOf(b.v[i]) >> 1));
+    for (int step = 0; step < 3; ++step) {
+      r = r * (1.5F - half_b * r * r);
+    }
+    return a.v[i] * r;
+  });
 }
 /// a where b is not 0.
 static inline Float16 orZeroWhereZero(const Float16& a, const Float16& b) {
-  return each<kSlots>([&](int i) { return b.v[i] != 0.0F ? a.v[i] : 0.0F; });
+  return each<kSlots>([&](int i) { return floatOf((b.v[i] != 0.0F) & bitsOf(a.v[i])); });
 }
 /// (Of a NaN and b, b.)
 template <int kLanes>
@@ -235,25 +264,26 @@ static inline Floats<kLanes> smaller(const Floats<kLanes>& a, const Floats<kLane
 }
 /// The smallest lane, where none is NaN.
 static inline float smallestLane(const Float16& a) {
-  float least = a.v[0];
-  for (int i = 1; i < kSlots; ++i) {
-    least = a.v[i] < least ? a.v[i] : least;
-  }
-  return least;
+  const auto lesser = [](auto x, auto y) { return x < y ? x : y; };
+  const Float4 four = lesser(lesser(a.v[0], a.v[1]), lesser(a.v[2], a.v[3]));
+  return lesser(lesser(four[0], four[1]), lesser(four[2], four[3]));
 }
 /// a but for one lane, which is +inf.
-static inline Float16 withInfinity(Float16 a, int lane) {
-  a.v[lane] = std::numeric_limits<float>::infinity();
-  return a;
+static inline Float16 withInfinity(const Float16& a, int lane) {
+  const Float4 infinity = quad(std::numeric_limits<float>::infinity());
+  return each<kSlots>([&](int i) {
+    const Int4 at = Int4{0, 1, 2, 3} + 4 * i;
+    return at == lane ? infinity : a.v[i];
+  });
 }
 /// A bit for every lane in which a <= b.
 template <int kLanes>
 static inline std::uint32_t notAbove(const Floats<kLanes>& a, const Floats<kLanes>& b) {
-  std::uint32_t bits = 0;
-  for (int i = 0; i < kLanes; ++i) {
-    bits |= (a.v[i] <= b.v[i] ? 1U : 0U) << i;
+  Int4 bits = {0, 0, 0, 0};
+  for (int i = 0; i < kLanes / 4; ++i) {
+    bits |= (a.v[i] <= b.v[i]) & (Int4{1, 2, 4, 8} << (4 * i));
   }
-  return bits;
+  return static_cast<std::uint32_t>((bits[0] | bits[1]) | (bits[2] | bits[3]));
 }
 
 /// Appends `base` + slot for every slot of `bits`.
@@ -266,9 +296,11 @@ static inline int append(std::uint32_t bits, std::uint32_t base, std::uint32_t* 
 /// The same with where each is entered.
 static inline int append(std::uint32_t bits, std::uint32_t base, const Float16& near,
                          std::uint32_t* list, float* nears, int count) {
+  float all[kSlots];
+  store16(all, near);
   for (; bits != 0; bits &= bits - 1) {
     const int slot = lowestBit(bits);
-    nears[count] = near.v[slot];
+    nears[count] = all[slot];
     list[count++] = base + static_cast<std::uint32_t>(slot);
   }
   return count;
