@@ -107,9 +107,10 @@ struct MonitorStatistics {
 /// Boxes whose frame is the fixed frame are taken bit for bit; others are placed by tf at the stamp
 /// of their message (0: the latest), those with frame_locked anew in every snapshot. One leading
 /// slash of a frame is dropped, since tf2 refuses it. While what a topic says of a box is bad or
-/// waits for its transform, the box stays where it was, and the scene is incomplete. If the ROS
-/// clock goes back, all transforms are forgotten, and all boxes but those that have just come with
-/// a stamp of the new time.
+/// waits for its transform, the box stays where it was, and the scene is incomplete. What all
+/// former publishers of a topic said is forgotten when new ones that took their place speak. If the
+/// ROS clock goes back, all transforms are forgotten, and all boxes but those that have just come
+/// with a stamp of the new time.
 class SceneMonitor {
  public:
   /// Topics are resolved in the namespace of `nh`.
