@@ -18,6 +18,9 @@ OrientedBox oriented(const AlignedBox& box) {
 
 void check(const GetSceneRequest& request) {
   check(BoxFilter(request));
+  if (request.scene_id != 0 && !request.scene_time.isZero()) {
+    throw std::invalid_argument("scene_id and scene_time are both given: give one of them");
+  }
 }
 
 void answer(const GetSceneRequest& request, const Snapshot& snapshot, const ros::Time& now,

@@ -35,7 +35,7 @@ void check(const GetSceneRequest& request);
 /// What a request is answered from.
 struct Context {
   const Snapshot& snapshot;
-  ros::Time now;      ///< ROS time of the answer
+  ros::Time now;      ///< ROS time that is asked about
   FrameChange frame;  ///< from the frame of the request
   Drawing drawing;    ///< filled by the answer
   /// Threads that work on a batch: see forEachPart().

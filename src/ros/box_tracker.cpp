@@ -282,9 +282,21 @@ void BoxTracker::expire(const ros::Time& now) {
   }
 }
 
-void BoxTracker::dropIfStale(std::size_t topic, const ros::Time& now) {
+std::int64_t BoxTracker::nextExpiry() const {
+  std::int64_t next = store_.nextExpiry();
+  for (std::size_t topic = 0; topic < topics_.size(); ++topic) {
+    next = std::min(next, dropTime(topic));
+  }
+  return next;
+}
+
+std::int64_t BoxTracker::dropTime(std::size_t topic) const {
   const TopicState& state = topics_[topic].state;
-  if (state.parameters.drop_stale && !store_.items(topic).empty() && state.isStale(now)) {
+  return state.parameters.drop_stale && !store_.items(topic).empty() ? state.staleAt() : kForever;
+}
+
+void BoxTracker::dropIfStale(std::size_t topic, const ros::Time& now) {
+  if (static_cast<std::int64_t>(now.toNSec()) >= dropTime(topic)) {
     ++changes_;
     counts_.dropped_boxes += store_.clear(topic);
   }

@@ -22,7 +22,7 @@ namespace box_query {
 
 /// What a snapshot is made of, before its scene is built.
 struct Draft {
-  Snapshot snapshot;       ///< without id and scene
+  Snapshot snapshot;       ///< without its scene
   std::vector<Box> boxes;  ///< of the scene
 };
 
@@ -68,8 +68,12 @@ class BoxTracker {
   Draft draft();
 
   bool isWaiting() const { return !waiting_.empty(); }
+  /// expire() drops nothing before this. [ns] of ROS time
+  std::int64_t nextExpiry() const;
   /// Grows with whatever a snapshot shows.
   std::uint64_t changes() const { return changes_; }
+  /// Whether a snapshot would show something else than the one with this id.
+  bool isAfter(std::uint64_t id) const { return id != changes_ + 1; }
   /// Grows with the boxes of a snapshot and their names.
   std::uint64_t boxesVersion() const { return store_.boxesRevision() + moves_; }
   const MonitorStatistics& counts() const { return counts_; }
@@ -89,6 +93,8 @@ class BoxTracker {
   };
 
   void noteArrival(Clock::time_point now);
+  /// When its boxes are dropped, unless another message comes. [ns] of ROS time
+  std::int64_t dropTime(std::size_t topic) const;
   void dropIfStale(std::size_t topic, const ros::Time& now);
   void apply(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now);
   void hear(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now);

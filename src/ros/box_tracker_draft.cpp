@@ -19,6 +19,7 @@ std::string waitingOf(std::size_t boxes, const std::string& topic) {
 
 Draft BoxTracker::draft() {
   Draft draft;
+  draft.snapshot.id = changes_ + 1;
   draft.snapshot.frame = parameters_.fixed_frame;
   draft.snapshot.stamp = newest_stamp_;
   draft.snapshot.topics.resize(topics_.size());

@@ -23,6 +23,16 @@ void KeptScenes::add(SnapshotPtr replaced, std::size_t boxes_now) {
   }
 }
 
+SnapshotPtr KeptScenes::restore(const PastScene& past, std::size_t boxes_now) {
+  const std::lock_guard<std::mutex> lock(restore_mutex_);
+  SnapshotPtr scene = find(past.id());
+  if (!scene) {
+    scene = past.restored();
+    add(scene, boxes_now);
+  }
+  return scene;
+}
+
 SnapshotPtr KeptScenes::find(std::uint64_t id) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto found = std::find_if(kept_.begin(), kept_.end(),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "ros/history.h"
+
 #include <box_query/ros/scene_monitor.h>
 
 #include <cstddef>
@@ -19,12 +21,15 @@ class KeptScenes {
 
   /// `replaced` is the latest no more; the one that is has `boxes_now`.
   void add(SnapshotPtr replaced, std::size_t boxes_now);
+  /// The one with the id of `past`: restored, and added, if it is not here.
+  SnapshotPtr restore(const PastScene& past, std::size_t boxes_now);
   /// The one with this id, or null.
   SnapshotPtr find(std::uint64_t id) const;
 
  private:
   const std::size_t max_scenes_;
   const std::size_t max_boxes_;
+  std::mutex restore_mutex_;  ///< so that each is restored once; locked before mutex_
   mutable std::mutex mutex_;
   std::deque<SnapshotPtr> kept_;
   std::size_t boxes_ = 0;  ///< in all of them

@@ -5,6 +5,7 @@
 #include "ros/bell.h"
 #include "ros/box_topics.h"
 #include "ros/box_tracker.h"
+#include "ros/history.h"
 #include "ros/kept_scenes.h"
 #include "ros/latest.h"
 #include "ros/name_order.h"
@@ -62,9 +63,7 @@ struct Built {
 using BuiltPtr = std::shared_ptr<Built>;
 
 BuiltPtr firstOf(BoxTracker& tracker) {
-  Draft empty = tracker.draft();
-  empty.snapshot.id = 1;
-  return std::make_shared<Built>(std::move(empty.snapshot));
+  return std::make_shared<Built>(std::move(tracker.draft().snapshot));
 }
 
 SnapshotPtr snapshotOf(const BuiltPtr& built) {
@@ -96,13 +95,14 @@ struct SceneMonitor::Impl {
   std::atomic<bool> tf_wanted{false};  ///< transforms ring the bell
   Transforms transforms;
 
-  std::mutex mutex;  ///< guards the next five
+  std::mutex mutex;  ///< guards the next seven
   BoxTracker tracker;
   std::vector<Succession> successions;  ///< of the publishers of each topic
   ros::Time now;                        ///< when last looked at
   std::uint64_t builds = 0;
   std::uint64_t refits = 0;
   std::uint64_t unbuilt_changes = 0;
+  History history;
 
   std::mutex build_mutex;           ///< one at a time; locked before `mutex`
   Latest<BuiltPtr> latest;          ///< never null; written with build_mutex locked
@@ -133,6 +133,7 @@ SceneMonitor::Impl::Impl(const ros::NodeHandle& node, const Parameters& given)
       tracker(parameters, transforms.buffer()),
       successions(parameters.box_topics.size(), Succession(ros::this_node::getName())),
       now(ros::Time::now()),
+      history(parameters),
       latest(firstOf(tracker)),
       kept(parameters),
       topics(node, parameters,
@@ -187,6 +188,7 @@ void SceneMonitor::Impl::receive(std::size_t topic, AnyBoxMessage& message) {
     former = tracker.lastSource(topic);
     successions[topic].hear(message.connection, tracker.lastWord(), Clock::now());
     tracker.receive(topic, message.source, std::move(message.decoded), now);
+    history.follow(tracker, now);
     tf_wanted = tracker.isWaiting();
   }
   bell.ring();
@@ -210,11 +212,13 @@ void SceneMonitor::Impl::noticeTime() {
                                                       << "; boxes and transforms are forgotten");
     transforms.clear();
     tracker.turnClockBack(now, time, Clock::now());
+    history.clear();
   }
   if (now.isZero() && !time.isZero()) {
     tracker.startClock(time);
   }
   now = time;
+  history.follow(tracker, now);
 }
 
 /// Makes the latest snapshot one of all that is known now, unless it is, or somebody else does.
@@ -224,6 +228,7 @@ void SceneMonitor::Impl::makeNewest() {
     noticeTime();
     tracker.expire(now);
     tracker.followLockedFrames();
+    history.follow(tracker, now);
     if (tracker.changes() == shown_changes) {
       return;
     }
@@ -244,7 +249,6 @@ void SceneMonitor::Impl::build() {
   lock.unlock();
 
   const BuiltPtr before = latest.read([](const BuiltPtr& built) { return built; });
-  draft.snapshot.id = before->snapshot.id + 1;
   const bool same = boxes == shown_boxes;
   const Snapshot& old = before->snapshot;
   draft.snapshot.scene =
@@ -300,6 +304,7 @@ void SceneMonitor::Impl::tick() {
     tracker.expire(now);
     tracker.settle(Clock::now());
     tracker.followLockedFrames();
+    history.follow(tracker, now);
     tf_wanted = tracker.isWaiting();
     boxes = tracker.boxesVersion();
   }
@@ -342,6 +347,27 @@ SnapshotPtr SceneMonitor::currentScene() {
 SnapshotPtr SceneMonitor::watchedScene() {
   impl_->makeNewest();
   return impl_->latest.read(snapshotOf);
+}
+
+std::string SceneMonitor::sceneAt(const ros::Time& time, SnapshotPtr& scene) {
+  std::unique_lock<std::mutex> lock(impl_->mutex);
+  impl_->noticeTime();
+  const std::string missing = impl_->history.missingAt(time, impl_->now);
+  if (!missing.empty()) {
+    return missing;
+  }
+  const auto past = impl_->history.at(time);
+  lock.unlock();
+  scene = impl_->latest.read([&past](const BuiltPtr& built) {
+    if (built->snapshot.id == past->id()) {
+      built->handed_out = true;
+    }
+    return snapshotOf(built);
+  });
+  if (scene->id != past->id()) {
+    scene = impl_->kept.restore(*past, scene->names.size());
+  }
+  return "";
 }
 
 SnapshotPtr SceneMonitor::sceneById(std::uint64_t id) const {

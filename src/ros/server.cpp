@@ -10,6 +10,15 @@
 #include <ros/console.h>
 
 namespace box_query {
+namespace {
+
+/// ROS time that is asked about.
+template <class Request>
+ros::Time timeOf(const Request& request) {
+  return request.scene_time.isZero() ? ros::Time::now() : request.scene_time;
+}
+
+}  // namespace
 
 template <class Service>
 void Server::advertise(ros::NodeHandle& private_nh, const std::string& name) {
@@ -58,6 +67,18 @@ Server::~Server() {
   queue_->clear();
 }
 
+SnapshotPtr Server::sceneAt(const ros::Time& scene_time) {
+  if (scene_time.isZero()) {
+    return monitor_.currentScene();
+  }
+  SnapshotPtr scene;
+  const std::string missing = monitor_.sceneAt(scene_time, scene);
+  if (!missing.empty()) {
+    throw std::runtime_error(missing);
+  }
+  return scene;
+}
+
 FrameChange Server::frameOf(const std_msgs::Header& header) const {
   const Parameters& parameters = monitor_.parameters();
   if (stripSlash(header.frame_id) == parameters.fixed_frame) {
@@ -86,9 +107,9 @@ template <class Request, class Response>
 void Server::answerNow(const Request& request, Response& response) {
   check(request, static_cast<std::size_t>(monitor_.parameters().max_queries_per_call));
   const FrameChange frame = frameOf(request.header);
-  const SnapshotPtr snapshot = monitor_.currentScene();
+  const SnapshotPtr snapshot = sceneAt(request.scene_time);
   Context context = {
-      *snapshot, ros::Time::now(), frame, markers_.drawing(), monitor_.parameters().batch_threads,
+      *snapshot, timeOf(request), frame, markers_.drawing(), monitor_.parameters().batch_threads,
       &totals_,  &stopping_};
   {
     const CountedQueries counted(&totals_);
@@ -101,7 +122,7 @@ void Server::answerNow(const Request& request, Response& response) {
 void Server::answerNow(const GetSceneRequest& request, GetSceneResponse& response) {
   check(request);
   const SnapshotPtr snapshot =
-      request.scene_id == 0 ? monitor_.currentScene() : monitor_.sceneById(request.scene_id);
+      request.scene_id == 0 ? sceneAt(request.scene_time) : monitor_.sceneById(request.scene_id);
   if (!snapshot) {
     throw std::runtime_error(
         "scene " + std::to_string(request.scene_id) + " is not kept: the last " +
@@ -110,7 +131,7 @@ void Server::answerNow(const GetSceneRequest& request, GetSceneResponse& respons
         " boxes in all; ask sooner, raise ~kept_scenes or ~max_kept_boxes, "
         "or ask for 0, the current one");
   }
-  answer(request, *snapshot, ros::Time::now(), response);
+  answer(request, *snapshot, timeOf(request), response);
   response.message = unknownNames(BoxFilter(request), *snapshot);
 }
 

@@ -59,6 +59,10 @@ class Server {
   void answerNow(const Request& request, Response& response);
   void answerNow(const GetSceneRequest& request, GetSceneResponse& response);
 
+  /// The scene that was known at this ROS time; 0: now.
+  /// @throws std::runtime_error saying which times there are.
+  SnapshotPtr sceneAt(const ros::Time& scene_time);
+
   /// Waits for the transform of the request's frame.
   /// @throws std::runtime_error saying what was missing.
   FrameChange frameOf(const std_msgs::Header& header) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <box_query/ros/scene_monitor.h>
 
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -16,8 +17,15 @@ double secondsBetween(const ros::Time& from, const ros::Time& to) {
 }  // namespace
 
 bool TopicState::isStale(const ros::Time& now) const {
-  return heard && parameters.timeout > 0.0 &&
-         secondsBetween(last_message, now) > parameters.timeout;
+  return static_cast<std::int64_t>(now.toNSec()) >= staleAt();
+}
+
+std::int64_t TopicState::staleAt() const {
+  if (!heard || parameters.timeout <= 0.0) {
+    return std::numeric_limits<std::int64_t>::max();
+  }
+  return static_cast<std::int64_t>(last_message.toNSec()) + std::llround(parameters.timeout * 1e9) +
+         1;
 }
 
 std::string TopicState::missing(const ros::Time& now) const {

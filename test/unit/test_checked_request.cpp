@@ -75,6 +75,7 @@ Request withFilters() {
   request.ignore_topics = {"/boxes"};
   request.ignore_namespaces = {"robot"};
   request.ignore_ids = {-3};
+  request.scene_time = ros::Time(5, 6);
   if constexpr (!std::is_same_v<Request, GetSceneRequest>) {
     request.header.frame_id = "base_link";
     request.header.stamp = ros::Time(7, 8);

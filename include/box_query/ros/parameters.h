@@ -60,6 +60,10 @@ struct Parameters {
   int kept_scenes = 100;
   /// Boxes in all of them together, some 500 bytes each; the oldest go first, the latest stays.
   int max_kept_boxes = 1000000;
+  /// [s] of ROS time that past scenes are remembered for requests with a `scene_time`; 0: none are.
+  double history = 0.0;
+  /// Scenes that are remembered so, one a change; the oldest go first.
+  int max_past_scenes = 1000;
 
   /// [Hz] at most at which ~markers is published.
   double marker_rate = 10.0;

@@ -47,6 +47,8 @@ struct TopicState {
   /// What keeps the topic from being known at ROS time `now`, as sentences that say what to do;
   /// empty if nothing does.
   std::string missing(const ros::Time& now) const;
+  /// [ns] of ROS time from when on it is, unless another message comes; the largest number: never.
+  std::int64_t staleAt() const;
 };
 
 /// Whether answers from a snapshot may be trusted as a whole.
@@ -57,7 +59,7 @@ struct Completeness {
 
 /// The boxes at one moment. Immutable; hold it as long as you need it.
 struct Snapshot {
-  std::uint64_t id = 0;  ///< counts up from 1; 0 is never a snapshot
+  std::uint64_t id = 0;  ///< grows from 1 with every change; 0 is never a snapshot
   /// Newest stamp among the messages of its boxes and deletions (a zero stamp counts as its time of
   /// receipt; what comes before a simulated clock has started is received when it starts).
   ros::Time stamp;
@@ -143,6 +145,13 @@ class SceneMonitor {
   /// A topic's name in full, as snapshots have it, in the namespace and with the remappings of the
   /// node handle; one that is no name as it is.
   std::string resolveTopic(const std::string& topic) const;
+
+  /// The snapshot that was the latest at ROS time `time`: of what had been received, and placed, by
+  /// then. Its completeness() and age() at that time are what they were. Remembered are the last
+  /// Parameters::history seconds, in at most max_past_scenes snapshots; none after the ROS clock
+  /// went back. It is built first if need be; sceneById() has it from then on.
+  /// @return an empty string, or a sentence that says which times there are.
+  std::string sceneAt(const ros::Time& time, SnapshotPtr& scene);
 
   /// Pose of `source` in `target` at `stamp` (0: latest), waiting for it up to `timeout` seconds of
   /// wall time, whatever the ROS clock does. Equal frames need no tf.

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ros/history.h"
+
+#include <algorithm>
+#include <cstring>
+#include <sstream>
+#include <tuple>
+#include <utility>
+
+namespace box_query {
+namespace {
+
+std::int64_t nanoseconds(const ros::Time& time) {
+  return static_cast<std::int64_t>(time.toNSec());
+}
+
+template <class Numbers>
+bool sameBits(const Numbers& a, const Numbers& b) {
+  return std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
+}
+bool sameBits(const AlignedBox& a, const AlignedBox& b) {
+  return sameBits(a.min, b.min) && sameBits(a.max, b.max);
+}
+bool sameBits(const OrientedBox& a, const OrientedBox& b) {
+  return sameBits(a.center, b.center) && sameBits(a.orientation.coeffs(), b.orientation.coeffs()) &&
+         sameBits(a.half_extents, b.half_extents);
+}
+bool sameBits(const Box& a, const Box& b) {
+  return a.index() == b.index() &&
+         std::visit(
+             [&b](const auto& box) {
+               return sameBits(box, std::get<std::decay_t<decltype(box)>>(b));
+             },
+             a);
+}
+
+}  // namespace
+
+PastScene::PastScene(const ros::Time& begin, const Draft& draft, const PastScene* before)
+    : begin_(begin),
+      id_(draft.snapshot.id),
+      stamp_(draft.snapshot.stamp),
+      frame_(draft.snapshot.frame),
+      topics_(draft.snapshot.topics) {
+  const std::vector<BoxName>& names = draft.snapshot.names;
+  for (std::size_t first = 0; first < names.size();) {
+    const BoxName& name = names[first];
+    std::size_t end = first + 1;
+    while (end < names.size() && names[end].ns == name.ns && names[end].topic == name.topic) {
+      ++end;
+    }
+    namespaces_.push_back(
+        share(draft, first, end, before ? before->find(name.topic, name.ns) : nullptr));
+    first = end;
+  }
+  const std::vector<ros::Time>& stamps = draft.snapshot.stamps;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    if (stamps_.empty() || stamps_.back().stamp != stamps[i]) {
+      stamps_.push_back({stamps[i], i});
+    }
+    stamps_.back().end = i + 1;
+  }
+  namespaces_.shrink_to_fit();
+  stamps_.shrink_to_fit();
+}
+
+PastScene::NamespacePtr PastScene::find(const std::string& topic, const std::string& ns) const {
+  const auto found = std::lower_bound(namespaces_.begin(), namespaces_.end(), std::tie(topic, ns),
+                                      [](const NamespacePtr& one, const auto& name) {
+                                        return std::tie(one->topic, one->ns) < name;
+                                      });
+  const bool is_there =
+      found != namespaces_.end() && (*found)->topic == topic && (*found)->ns == ns;
+  return is_there ? *found : nullptr;
+}
+
+bool PastScene::isSame(const NamedBox& before, const BoxName& name, const Box& box) {
+  return before.id == name.id && before.label == name.label && sameBits(before.box, box);
+}
+
+PastScene::NamespacePtr PastScene::share(const Draft& draft, std::size_t begin, std::size_t end,
+                                         const NamespacePtr& before) {
+  static const std::vector<std::shared_ptr<const NamedBox>> none;
+  const auto& old = before ? before->boxes : none;
+  const BoxName& first = draft.snapshot.names[begin];
+  auto made = std::make_shared<Namespace>(Namespace{first.topic, first.ns, {}});
+  made->boxes.reserve(end - begin);
+  bool all_same = old.size() == end - begin;
+  std::size_t at = 0;  // both are in the order of ids
+  for (std::size_t i = begin; i < end; ++i) {
+    const BoxName& name = draft.snapshot.names[i];
+    while (at < old.size() && old[at]->id < name.id) {
+      ++at;
+    }
+    if (at < old.size() && isSame(*old[at], name, draft.boxes[i])) {
+      made->boxes.push_back(old[at++]);
+    } else {
+      made->boxes.push_back(
+          std::make_shared<const NamedBox>(NamedBox{name.id, name.label, draft.boxes[i]}));
+      all_same = false;
+    }
+  }
+  return all_same ? before : made;
+}
+
+SnapshotPtr PastScene::restored() const {
+  auto snapshot = std::make_shared<Snapshot>();
+  snapshot->id = id_;
+  snapshot->stamp = stamp_;
+  snapshot->frame = frame_;
+  snapshot->topics = topics_;
+  std::vector<Box> boxes;
+  for (const NamespacePtr& one : namespaces_) {
+    for (const auto& box : one->boxes) {
+      boxes.push_back(box->box);
+      snapshot->names.push_back({one->topic, one->ns, box->id, box->label});
+    }
+  }
+  for (const StampRun& run : stamps_) {
+    snapshot->stamps.resize(run.end, run.stamp);
+  }
+  snapshot->scene = Scene(std::move(boxes));
+  return snapshot;
+}
+
+History::History(const Parameters& parameters)
+    : duration_(static_cast<std::int64_t>(parameters.history * 1e9)),
+      max_scenes_(static_cast<std::size_t>(parameters.max_past_scenes)) {}
+
+void History::follow(BoxTracker& tracker, const ros::Time& now) {
+  if (!keeps() || now.isZero()) {
+    return;
+  }
+  while (tracker.nextExpiry() <= nanoseconds(now)) {
+    ros::Time end;
+    end.fromNSec(static_cast<std::uint64_t>(tracker.nextExpiry()));
+    tracker.expire(end);
+    addIfNew(tracker, end);
+  }
+  addIfNew(tracker, now);
+}
+
+void History::addIfNew(BoxTracker& tracker, const ros::Time& begin) {
+  if (scenes_.empty() || tracker.isAfter(scenes_.back()->id())) {
+    add(begin, tracker.draft());
+  }
+}
+
+void History::add(const ros::Time& begin, const Draft& draft) {
+  const PastScene* const last = scenes_.empty() ? nullptr : scenes_.back().get();
+  scenes_.push_back(std::make_shared<const PastScene>(last ? std::max(begin, last->begin()) : begin,
+                                                      draft, last));
+  // The first one stays until the next has been so for the whole duration.
+  const std::int64_t oldest = nanoseconds(begin) - duration_;
+  while (scenes_.size() > max_scenes_ ||
+         (scenes_.size() > 1 && nanoseconds(scenes_[1]->begin()) <= oldest)) {
+    scenes_.pop_front();
+  }
+}
+
+std::shared_ptr<const PastScene> History::at(const ros::Time& time) const {
+  const auto next = std::upper_bound(scenes_.begin(), scenes_.end(), time,
+                                     [](const ros::Time& asked, const auto& scene) {
+                                       return asked.toNSec() < scene->begin().toNSec();
+                                     });
+  return next == scenes_.begin() ? nullptr : *std::prev(next);
+}
+
+ros::Time History::begin() const {
+  return scenes_.empty() ? ros::Time() : scenes_.front()->begin();
+}
+
+std::string History::missingAt(const ros::Time& time, const ros::Time& now) const {
+  std::ostringstream text;
+  text << "scene_time is " << time << ", but ";
+  if (!keeps()) {
+    text << "past scenes are not remembered: set ~history, or give 0 for now";
+  } else if (now.isZero()) {
+    text << "the ROS clock has not started: publish /clock";
+  } else if (!at(time) || time.toNSec() > now.toNSec()) {
+    text << "scenes are known from " << begin() << " to " << now
+         << ", now: ask for one of these, for 0 (now), or raise ~history or ~max_past_scenes";
+  } else {
+    return "";
+  }
+  return text.str();
+}
+
+}  // namespace box_query

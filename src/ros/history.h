@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/// @file
+/// The scenes of the last seconds, for questions about the past.
+#pragma once
+
+#include "ros/box_tracker.h"
+
+#include <box_query/ros/scene_monitor.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <ros/time.h>
+
+namespace box_query {
+
+/// A snapshot without its scene, which is built when somebody asks. Boxes that are as in the one
+/// before are shared with it: to the last bit, but for their stamps. Immutable.
+class PastScene {
+ public:
+  /// What the draft says is so from `begin` on. `before` may be null.
+  PastScene(const ros::Time& begin, const Draft& draft, const PastScene* before);
+
+  const ros::Time& begin() const { return begin_; }
+  std::uint64_t id() const { return id_; }
+  /// The snapshot that the draft would have become.
+  SnapshotPtr restored() const;
+
+ private:
+  struct NamedBox {
+    std::int64_t id;
+    std::string label;
+    Box box;
+  };
+  /// The boxes of one namespace of a topic, in the order of the snapshot.
+  struct Namespace {
+    std::string topic;
+    std::string ns;
+    std::vector<std::shared_ptr<const NamedBox>> boxes;
+  };
+  using NamespacePtr = std::shared_ptr<const Namespace>;
+  struct StampRun {
+    ros::Time stamp;
+    std::size_t end;  ///< of the boxes that came with it
+  };
+
+  NamespacePtr find(const std::string& topic, const std::string& ns) const;
+  static NamespacePtr share(const Draft& draft, std::size_t begin, std::size_t end,
+                            const NamespacePtr& before);
+  static bool isSame(const NamedBox& before, const BoxName& name, const Box& box);
+
+  ros::Time begin_;
+  std::uint64_t id_;
+  ros::Time stamp_;
+  std::string frame_;
+  std::vector<TopicState> topics_;
+  std::vector<NamespacePtr> namespaces_;
+  std::vector<StampRun> stamps_;  ///< whole sets have one
+};
+
+/// Keeps what was so in the last Parameters::history seconds, in at most max_past_scenes scenes.
+/// Not thread safe.
+class History {
+ public:
+  explicit History(const Parameters& parameters);
+
+  /// Whether anything is kept at all.
+  bool keeps() const { return duration_ > 0; }
+  /// Adds what the tracker knows at `now`, if that is something new, and lets lifetimes end on the
+  /// way, each when it ended and not when somebody looked. Does nothing where nothing is kept.
+  void follow(BoxTracker& tracker, const ros::Time& now);
+  /// What the draft says is so from `begin` on, or, if that is earlier, from when the last one was.
+  void add(const ros::Time& begin, const Draft& draft);
+  void clear() { scenes_.clear(); }
+
+  /// What was so at `time`; null before the first scene that is kept.
+  std::shared_ptr<const PastScene> at(const ros::Time& time) const;
+  /// From when on something is kept.
+  ros::Time begin() const;
+  /// A sentence that says which times there are, where `time` is none of them; else empty.
+  std::string missingAt(const ros::Time& time, const ros::Time& now) const;
+
+ private:
+  void addIfNew(BoxTracker& tracker, const ros::Time& begin);
+
+  const std::int64_t duration_;  ///< [ns]
+  const std::size_t max_scenes_;
+  std::deque<std::shared_ptr<const PastScene>> scenes_;
+};
+
+}  // namespace box_query
