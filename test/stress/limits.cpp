@@ -7,11 +7,11 @@
 namespace box_query::stress {
 namespace {
 
-/// The exponent of a power of two at one of the limits, or near it.
+/// The exponent of a power of two at one of the limits, near it, or well beyond it.
 template <std::size_t kCount>
 int near(Random& random, const int (&limits)[kCount]) {
   const int limit = limits[random.below(static_cast<int>(kCount))];
-  return limit + random.between(-3, 3);
+  return limit + (random.chance(0.8) ? random.between(-3, 3) : random.between(-200, 200));
 }
 template <std::size_t kCount>
 double signedNear(Random& random, const int (&limits)[kCount]) {
@@ -38,11 +38,12 @@ Sample around(Random& random, bool oriented) {
 
 /// Makes it a segment of the smallest doubles, or nearly so: beside zeros its end is not its start.
 void shrinkSegment(Random& random, Sample& sample) {
+  static constexpr int kPowers[] = {-1074, -1074, -1060, -800};
+  const int power = kPowers[random.below(4)];
+  const bool at_zero = random.chance(0.7);
   for (int i = 0; i < 3; ++i) {
-    const int power = random.chance(0.5) ? -1073 : -800;
-    const double step = std::ldexp(random.half(2), power);
-    sample.origin[i] = random.chance(0.6) ? 0.0 : sample.origin[i];
-    sample.end[i] = sample.origin[i] + (random.chance(0.8) ? step : 0.0);
+    sample.origin[i] = at_zero || random.chance(0.4) ? 0.0 : sample.origin[i];
+    sample.end[i] = sample.origin[i] + std::ldexp(2.0 * random.half(4), power);
   }
 }
 
@@ -76,11 +77,11 @@ Sample stageLimits(Random& random, bool oriented) {
   static constexpr int kPlaces[] = {-800, -400, -200, -100, 40, 60, 100};
   static constexpr int kNorms[] = {-100, -50, 50, 100};
   Sample sample = around(random, oriented);
-  if (random.chance(0.2)) {
-    shrinkSegment(random, sample);
-  }
   if (random.chance(0.5)) {
     scalePlaces(sample, near(random, kPlaces));
+  }
+  if (random.chance(0.2)) {
+    shrinkSegment(random, sample);
   }
   if (random.chance(0.6)) {
     limitDirection(random, sample.direction);

@@ -121,6 +121,26 @@ TEST(Mutations, AShrunkBoundOfTheSlopeOfDistancesIsNoticed) {
   EXPECT_GT(wrongDistances("rounded_axis", 3000), 0U);
 }
 
+TEST(Mutations, DirectionsTooShortForTheFilterAreNoticed) {
+  const Spoilt<double> spoilt(bounds::kSmallestDirection, 0.0);
+  EXPECT_GT(wrongPairs("stage_limits", 8000), 0U);
+}
+
+TEST(Mutations, DirectionsAcrossAnAxisThatAreTakenAsTheyAreAreNoticed) {
+  const Spoilt<double> spoilt(bounds::kFlattest, 0.0);
+  EXPECT_GT(wrongPairs("stage_limits", 2000), 0U);
+}
+
+TEST(Mutations, ScalesTooSmallForDistancesAreNoticed) {
+  const Spoilt<double> spoilt(bounds::kSmallestScale, 0.0);
+  EXPECT_GT(wrongDistances("stage_limits", 1000), 0U);
+}
+
+TEST(Mutations, SegmentsTooShortForTheFrameOfABoxAreNoticed) {
+  const Spoilt<double> spoilt(bounds::kShortestDirection, 0.0);
+  EXPECT_GT(wrongDistances("stage_limits", 8000), 0U);
+}
+
 TEST(Mutations, ShrunkBoundsOfRaysInFloatAreNoticed) {
   const Spoilt<double> shift(float_bounds::kShiftError, float_bounds::kShiftError / 64);
   const Spoilt<double> farther(float_bounds::kFarther, 1.0 + 0x1p-20 / 64);
