@@ -14,6 +14,9 @@ KeptScenes::KeptScenes(const Parameters& parameters)
 void KeptScenes::add(SnapshotPtr replaced, std::size_t boxes_now) {
   std::vector<SnapshotPtr> forgotten;  // freed without the lock
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (findLocked(replaced->id)) {
+    return;  // it was restored while it was still to be built
+  }
   boxes_ += replaced->names.size();
   kept_.push_back(std::move(replaced));
   while (!kept_.empty() && (kept_.size() + 1 > max_scenes_ || boxes_ + boxes_now > max_boxes_)) {
@@ -35,6 +38,10 @@ SnapshotPtr KeptScenes::restore(const PastScene& past, std::size_t boxes_now) {
 
 SnapshotPtr KeptScenes::find(std::uint64_t id) const {
   const std::lock_guard<std::mutex> lock(mutex_);
+  return findLocked(id);
+}
+
+SnapshotPtr KeptScenes::findLocked(std::uint64_t id) const {
   const auto found = std::find_if(kept_.begin(), kept_.end(),
                                   [id](const SnapshotPtr& snapshot) { return snapshot->id == id; });
   return found == kept_.end() ? nullptr : *found;

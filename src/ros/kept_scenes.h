@@ -19,7 +19,7 @@ class KeptScenes {
   /// At most Parameters::kept_scenes and max_kept_boxes, with the latest one.
   explicit KeptScenes(const Parameters& parameters);
 
-  /// `replaced` is the latest no more; the one that is has `boxes_now`.
+  /// `replaced` is the latest no more; the one that is has `boxes_now`. Each id is kept once.
   void add(SnapshotPtr replaced, std::size_t boxes_now);
   /// The one with the id of `past`: restored, and added, if it is not here.
   SnapshotPtr restore(const PastScene& past, std::size_t boxes_now);
@@ -27,6 +27,8 @@ class KeptScenes {
   SnapshotPtr find(std::uint64_t id) const;
 
  private:
+  SnapshotPtr findLocked(std::uint64_t id) const;
+
   const std::size_t max_scenes_;
   const std::size_t max_boxes_;
   std::mutex restore_mutex_;  ///< so that each is restored once; locked before mutex_

@@ -5,6 +5,7 @@
 #include "ros/bell.h"
 #include "ros/box_topics.h"
 #include "ros/box_tracker.h"
+#include "ros/built.h"
 #include "ros/history.h"
 #include "ros/kept_scenes.h"
 #include "ros/latest.h"
@@ -52,22 +53,6 @@ Parameters resolved(const ros::NodeHandle& nh, Parameters parameters) {
     }
   }
   return parameters;
-}
-
-/// A snapshot, and whether somebody has got it, who may ask for it by its id.
-struct Built {
-  explicit Built(Snapshot&& given) : snapshot(std::move(given)) {}
-  const Snapshot snapshot;
-  std::atomic<bool> handed_out{false};
-};
-using BuiltPtr = std::shared_ptr<Built>;
-
-BuiltPtr firstOf(BoxTracker& tracker) {
-  return std::make_shared<Built>(std::move(tracker.draft().snapshot));
-}
-
-SnapshotPtr snapshotOf(const BuiltPtr& built) {
-  return {built, &built->snapshot};
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/history.h"
+#include "ros/kept_scenes.h"
 #include "unit/answer_fixture.h"
 
 #include <algorithm>
@@ -189,6 +190,19 @@ TEST(History, RestoresBoxesOfOneName) {
   draft.snapshot.id = 2;
   history.add(ros::Time(2), draft);
   expectSame(*history.at(ros::Time(2))->restored(), draft);
+}
+
+TEST(KeptScenes, RestoresEachPastSceneOnce) {
+  Parameters parameters;
+  parameters.kept_scenes = 3;  // with the latest
+  KeptScenes kept(parameters);
+  const PastScene past(ros::Time(1), draftOf({}, 1), nullptr);
+  const SnapshotPtr scene = kept.restore(past, 0);
+  EXPECT_EQ(kept.restore(past, 0), scene);
+  EXPECT_EQ(kept.find(1), scene);
+  kept.add(past.restored(), 0);  // built for somebody else
+  kept.add(PastScene(ros::Time(2), draftOf({}, 2), nullptr).restored(), 0);
+  EXPECT_EQ(kept.find(1), scene) << "nothing had to go";
 }
 
 /// 1,000 boxes of one namespace.
