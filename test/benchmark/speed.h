@@ -163,6 +163,7 @@ struct SpeedRow {
 struct SpeedOptions {
   int rounds = 15;           ///< Turns of each method on the clock.
   std::size_t sample = 500;  ///< Rays whose answers are compared, fewer where boxes are very many.
+  bool threads = true;       ///< Whether to measure Mode::kThreads.
 };
 
 std::vector<SpeedRow> measureSpeed(const Workload& workload, const SpeedOptions& options,

@@ -115,6 +115,10 @@ class Run {
            std::regex_search(kind + " " + std::to_string(boxes), arguments_.only);
   }
   void measure(const Workload& workload, const std::vector<SpeedMethodKind>& methods) {
+    options_.threads = haveTwoCores();
+    if (!options_.threads) {
+      std::cout << "Two threads are not measured here, since other programs keep the cores busy.\n";
+    }
     for (const SpeedRow& row : measureSpeed(workload, options_, methods)) {
       print(row, std::cout);
       rows_.push_back(row);

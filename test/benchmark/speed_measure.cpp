@@ -239,6 +239,8 @@ std::vector<SpeedRow> measureSpeed(const Workload& workload, const SpeedOptions&
     for (const Question question : kBatchQuestions) {
       measurement.batch(question);
     }
+  }
+  if (measurement.hasBatches() && options.threads) {
     for (const Question question : kThreadQuestions) {
       measurement.threads(question);
     }

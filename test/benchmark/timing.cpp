@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <thread>
 
 #include <time.h>
 
@@ -14,6 +15,8 @@ namespace {
 
 /// Short turns: the machine is in the same state in those that are compared.
 constexpr double kTurnNs = 2e5;
+/// Long ones on the wall, where threads of other programs are waited for.
+constexpr double kWallTurnNs = 2e7;
 /// A pass that takes so long is not made warm before it is timed, and has fewer turns.
 constexpr double kLongNs = 5e7;
 constexpr double kAllTurnsNs = 5e8;
@@ -50,7 +53,8 @@ class Contender {
       took = time() - start;
     }
     is_long_ = took >= kLongNs;
-    passes_ = std::max(1, static_cast<int>(kTurnNs / std::max(1.0, took)));
+    const double turn = clock == Clock::kThread ? kTurnNs : kWallTurnNs;
+    passes_ = std::max(1, static_cast<int>(turn / std::max(1.0, took)));
     rounds_ = std::max(1, std::min(rounds, static_cast<int>(kAllTurnsNs / std::max(1.0, took))));
   }
 
@@ -126,6 +130,23 @@ std::vector<Timing> timeSideBySide(const std::vector<Pass>& passes, std::size_t 
     timings.push_back(contender.timing(contenders[base]));
   }
   return timings;
+}
+
+bool haveTwoCores() {
+  constexpr double kSpinNs = 3e7;
+  constexpr double kEnough = 0.9;
+  double worked[2] = {};
+  const auto spin = [](double& ns) {
+    const double end = now() + kSpinNs;
+    const double start = threadTime();
+    while (now() < end) {
+    }
+    ns = threadTime() - start;
+  };
+  std::thread other(spin, std::ref(worked[1]));
+  spin(worked[0]);
+  other.join();
+  return std::min(worked[0], worked[1]) > kEnough * kSpinNs;
 }
 
 std::pair<std::vector<double>, std::vector<double>> timeEachOfTwo(const Query& one,

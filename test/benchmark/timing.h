@@ -34,7 +34,8 @@ using Pass = std::function<std::uint64_t()>;
 /// Query number i on its own.
 using Query = std::function<std::uint64_t(std::size_t i)>;
 
-/// kThread: what other programs take of the machine does not count. kWall: for what has threads.
+/// kThread: what other programs take of the machine does not count. kWall: for what has threads;
+/// turns of 20 ms.
 enum class Clock { kThread, kWall };
 
 /// @param queries in one pass; each turn runs passes for about 0.2 ms, after one that is not timed.
@@ -42,6 +43,9 @@ enum class Clock { kThread, kWall };
 /// @throws std::runtime_error if a contender's sum changes from pass to pass.
 std::vector<Timing> timeSideBySide(const std::vector<Pass>& passes, std::size_t queries, int rounds,
                                    std::size_t base, Clock clock = Clock::kThread);
+
+/// Whether two threads have a core each just now: else nothing can be said of what they gain.
+bool haveTwoCores();
 
 /// Nanoseconds of every query on its own, of two contenders in turns: each the smallest of
 /// `repeats`, with the clock's own time in it.
