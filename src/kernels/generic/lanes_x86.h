@@ -92,8 +92,8 @@ static inline Double4 sumOf3(Double4 a) {
 }
 static inline double sum3(Double4 a) {
   const __m128d two = _mm256_castpd256_pd128(a.v);
-  return _mm_cvtsd_f64(_mm_add_sd(_mm_add_sd(two, _mm_unpackhi_pd(two, two)),
-                                  _mm256_extractf128_pd(a.v, 1)));
+  return _mm_cvtsd_f64(
+      _mm_add_sd(_mm_add_sd(two, _mm_unpackhi_pd(two, two)), _mm256_extractf128_pd(a.v, 1)));
 }
 static inline Double4 larger(Double4 a, Double4 b) {
   return {_mm256_max_pd(a.v, b.v)};
