@@ -166,6 +166,16 @@ void move(Fields&& fields, BoxChange& change) {
   change = std::move(move);
 }
 
+/// Its shapes mean nothing, be they good or bad.
+void remove(BoxChange& change) {
+  BoxChange removal;
+  removal.kind = change.ns.empty() ? BoxChange::Kind::kClear : BoxChange::Kind::kRemove;
+  removal.whole_namespace = change.whole_namespace;
+  removal.ns = change.ns;
+  removal.stamp = change.stamp;
+  change = std::move(removal);
+}
+
 /// Makes the change what the operation means.
 void apply(std::int8_t operation, Fields&& fields, BoxChange& change) {
   switch (operation) {
@@ -177,7 +187,7 @@ void apply(std::int8_t operation, Fields&& fields, BoxChange& change) {
       add(std::move(fields), change);
       break;
     case kRemove:
-      change.kind = change.ns.empty() ? BoxChange::Kind::kClear : BoxChange::Kind::kRemove;
+      remove(change);
       break;
     case kMove:
       move(std::move(fields), change);

@@ -80,6 +80,9 @@ TEST(CollisionObjectSource, TellsOperationsApart) {
   EXPECT_EQ(decode(object("shelf", {1}, kAppend)).changes.at(0).kind, BoxChange::Kind::kAppend);
   EXPECT_EQ(decode(object("shelf", {}, kRemove)).changes.at(0).kind, BoxChange::Kind::kRemove);
   EXPECT_EQ(decode(object("", {}, kRemove)).changes.at(0).kind, BoxChange::Kind::kClear);
+  const DecodedMessage with_shapes = decode(object("shelf", {1.0, kNan}, kRemove));
+  EXPECT_TRUE(with_shapes.changes.at(0).boxes.empty()) << "what leaves has no shapes";
+  EXPECT_EQ(with_shapes.changes.at(0).rejected(), 0U) << "nor bad ones";
   for (const Operation bad : {Operation(4), Operation(-1)}) {
     const BoxChange change = decode(object("shelf", {1}, bad)).changes.at(0);
     EXPECT_EQ(change.kind, BoxChange::Kind::kSet);
