@@ -73,6 +73,21 @@ def read_results(folder):
     return cases
 
 
+def chosen(tests, names, left_out):
+    """Tests whose name contains one of the names, if there are any, and does not match the expression, if there is one.
+
+    A name or an expression that is that of no test is an error.
+    """
+    known = ' '.join(test.name for test in tests)
+    for name in names:
+        if name not in known:
+            raise ValueError('no test is named like %s; there are %s' % (name, known))
+    if left_out and not any(re.search(left_out, test.name) for test in tests):
+        raise ValueError('no test matches %s; there are %s' % (left_out, known))
+    return [test for test in tests if (not names or any(name in test.name for name in names)) and
+            not (left_out and re.search(left_out, test.name))]
+
+
 def targets_of(tests):
     """What is built for these tests, each once."""
     return sorted({target for test in tests for target in test.targets})
@@ -217,17 +232,17 @@ def main():
     parser.add_argument('--jobs', type=int, default=os.cpu_count(), metavar='N', help='tests that run at once')
     parser.add_argument('--allow-skips', default='', metavar='REGEX',
                         help='a skip counts as failed unless this matches its name and reason')
+    parser.add_argument('--leave-out', metavar='REGEX', help='not the tests whose name it matches')
     parser.add_argument('--without-scripts', action='store_true', help='only programs that were built here')
     parser.add_argument('--targets', action='store_true', help='print what is to be built for these tests; run none')
     parser.add_argument('names', nargs='*', metavar='NAME', help='only tests whose name contains NAME')
     arguments = parser.parse_args()
     tests = [test for test in read_list(os.path.join(arguments.build_dir, 'tests.txt'))
              if test.kind != 'script' or not arguments.without_scripts]
-    for name in arguments.names:
-        if not any(name in test.name for test in tests):
-            parser.error('no test is named like %s; there are %s' % (name, ' '.join(test.name for test in tests)))
-    if arguments.names:
-        tests = [test for test in tests if any(name in test.name for name in arguments.names)]
+    try:
+        tests = chosen(tests, arguments.names, arguments.leave_out)
+    except ValueError as error:
+        parser.error(str(error))
     if arguments.targets:
         print('\n'.join(targets_of(tests)))
         return 0

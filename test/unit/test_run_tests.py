@@ -157,6 +157,18 @@ class RunTests(unittest.TestCase):
         self.assertEqual(run_tests.targets_of(tests[:2]), ['all', 'p_test_a', 'p_test_b'])
         self.assertEqual(run_tests.targets_of(tests[:1]), ['p_test_a'])
 
+    def test_tests_are_chosen_by_name_and_left_out_by_expression(self):
+        def names(*arguments):
+            return [test.name for test in run_tests.chosen(tests, *arguments)]
+
+        tests = [Test(name, 'gtest', 9.0, [], []) for name in ('test_a', 'test_ab', 'test_b')]
+        self.assertEqual(names([], None), ['test_a', 'test_ab', 'test_b'])
+        self.assertEqual(names(['a'], None), ['test_a', 'test_ab'])
+        self.assertEqual(names([], 'b$'), ['test_a'])
+        self.assertEqual(names(['a'], 'b$'), ['test_a'])
+        self.assertRaisesRegex(ValueError, 'like c; there are test_a', names, ['a', 'c'], None)
+        self.assertRaisesRegex(ValueError, 'matches c; there are test_a', names, [], 'c')
+
     def refusal(self, *arguments):
         """What test/run says of arguments that it refuses before it does anything."""
         run = os.path.join(os.path.dirname(run_tests.__file__), 'run')
