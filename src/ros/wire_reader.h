@@ -5,7 +5,6 @@
 
 #include <box_query/geometry.h>
 
-#include <array>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -96,37 +95,42 @@ class WireReader {
   }
 
   Vector3 vector() {
-    const auto xyz = numbers<3>();
-    return {xyz[0], xyz[1], xyz[2]};
+    Vector3 value = Vector3::Zero();
+    if (const std::uint8_t* bytes = take(kVector)) {
+      copyTo(value, bytes);
+    }
+    return value;
   }
 
   WireBox box() {
-    const std::uint8_t* bytes = take(10 * sizeof(double));
-    if (!bytes) {
-      return {Vector3::Zero(), {0.0, 0.0, 0.0, 0.0}, Vector3::Zero()};
+    WireBox value;
+    if (const std::uint8_t* bytes = take(kVector + kQuaternion + kVector)) {
+      copyTo(value.center, bytes);
+      copyTo(value.orientation.coeffs(), bytes + kVector);
+      copyTo(value.size, bytes + kVector + kQuaternion);
+    } else {
+      value = {Vector3::Zero(), {0.0, 0.0, 0.0, 0.0}, Vector3::Zero()};
     }
-    const auto n = [bytes](std::size_t index) {
-      double value;
-      std::memcpy(&value, bytes + index * sizeof(value), sizeof(value));
-      return value;
-    };
-    return {{n(0), n(1), n(2)}, {n(6), n(3), n(4), n(5)}, {n(7), n(8), n(9)}};
+    return value;
   }
 
-  /// geometry_msgs/Quaternion: x, y, z, w.
+  /// geometry_msgs/Quaternion: x, y, z, w, which is Eigen's own order.
   Quaternion quaternion() {
-    const auto xyzw = numbers<4>();
-    return {xyzw[3], xyzw[0], xyzw[1], xyzw[2]};
+    Quaternion value(0.0, 0.0, 0.0, 0.0);
+    if (const std::uint8_t* bytes = take(kQuaternion)) {
+      copyTo(value.coeffs(), bytes);
+    }
+    return value;
   }
 
  private:
-  template <std::size_t N>
-  std::array<double, N> numbers() {
-    std::array<double, N> values{};
-    if (const std::uint8_t* bytes = take(sizeof(values))) {
-      std::memcpy(values.data(), bytes, sizeof(values));
-    }
-    return values;
+  static constexpr std::size_t kVector = 3 * sizeof(double);
+  static constexpr std::size_t kQuaternion = 4 * sizeof(double);
+
+  /// As wide as Eigen reads: numbers that were just written one by one would be waited for.
+  template <typename Numbers>
+  static void copyTo(Numbers&& numbers, const std::uint8_t* bytes) {
+    std::memcpy(numbers.data(), bytes, static_cast<std::size_t>(numbers.size()) * sizeof(double));
   }
 
   const std::uint8_t* take(std::uint64_t size) {
