@@ -6,6 +6,7 @@
 
 #include "benchmark/timing.h"
 
+#include <box_query/counters.h>
 #include <box_query/scene.h>
 
 #include <cstdint>
@@ -158,6 +159,8 @@ struct SpeedRow {
   /// Those that are wrong even for boxes that differ by a nanometre; of box_query wrong ones at
   /// all.
   std::size_t wrong = 0;
+  /// Of box_query, one ray a call: what these answers took.
+  QueryCounters work = {};
 };
 
 struct SpeedOptions {

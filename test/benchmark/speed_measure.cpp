@@ -200,12 +200,15 @@ class Measurement {
       for (std::size_t i = 0; i < here; ++i) {
         const SpeedAnswer truth = truthOf(question, scene.boxes, scene.rays[i]);
         for (std::size_t k = 0; k < contenders.size(); ++k) {
+          const QueryCounters before = queryCounters();
+          const SpeedAnswer given = answer(contenders[k], s, i);
+          rows[k].work += queryCounters() - before;
           ++rows[k].asked;
           rows[k].hits += truth.box != kNoBox ? 1 : 0;
-          rows[k].wrong += isWrong(question, scene.boxes, scene.rays[i],
-                                   answer(contenders[k], s, i), truth, contenders[k].method == 0)
-                               ? 1
-                               : 0;
+          rows[k].wrong +=
+              isWrong(question, scene.boxes, scene.rays[i], given, truth, contenders[k].method == 0)
+                  ? 1
+                  : 0;
         }
       }
     }

@@ -62,6 +62,7 @@ void expectNothingWrong(const std::vector<SpeedRow>& rows) {
       EXPECT_EQ(0U, row.asked);
       continue;
     }
+    EXPECT_EQ(row.method == "box_query" && row.mode == Mode::kSingle, row.work.nodes > 0);
     EXPECT_EQ(128U, row.asked);
     EXPECT_GT(row.hits, 0U);
     const bool is_ours = row.method.rfind("box_query", 0) == 0;
@@ -149,13 +150,20 @@ TEST(SpeedBars, AreALineEachThatEndsInHoldsOrFallsShort) {
 }
 
 TEST(SpeedReport, IsALineARow) {
-  const SpeedRow row = rowOf("dense", 16, Question::kAny30, "Embree, boxes", 34, 1.7);
+  SpeedRow row = rowOf("dense", 16, Question::kAny30, "Embree, boxes", 34, 1.7);
+  row.asked = 4;
+  row.work.nodes = 8;
+  row.work.exact_decisions = 1;
   std::ostringstream csv;
   writeCsv({row, row}, csv);
   const std::string text = csv.str();
   EXPECT_EQ(3, std::count(text.begin(), text.end(), '\n'));
   EXPECT_NE(std::string::npos, text.find("dense,16,\"any, 30 m\",single,\"Embree, boxes\",34.0,"))
       << text;
+  EXPECT_NE(std::string::npos, text.find(",2.00,0.000,0.000,0.25,0.25,0\n")) << text;
+  std::ostringstream table;
+  print(row, table);
+  EXPECT_NE(std::string::npos, table.str().find("; 2.0 nodes, 0.00 boxes, 0.25 left open\n"));
 }
 
 TEST(Speed, SaysOfEveryPeerWhetherItWasFound) {
