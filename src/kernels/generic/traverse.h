@@ -19,16 +19,10 @@ bool descend(const SceneView& view, int level, const std::uint32_t* nodes, int c
   work.nodes += static_cast<std::uint32_t>(count);
   int listed = 0;
   if (level > 0) {
-    const Bounds* below = view.levels[level - 1].bounds;
     for (int k = 0; k < count; ++k) {
       Float16 near;
       const std::uint32_t bits = meets(here.bounds[nodes[k]], ray, near);
-      const int before = listed;
       listed = append(bits, here.first[nodes[k]], list, listed);
-      for (int i = before; i < listed; ++i) {
-        prefetch(&below[list[i]]);
-        prefetch(&below[list[i]].plane[1]);
-      }
       if (listed > kListed - kSlots) {
         if (!descend(view, level - 1, list, listed, ray, work, visit)) {
           return false;
