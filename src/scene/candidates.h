@@ -31,9 +31,13 @@ inline kernels::RayQuery rayQuery(const Segment& segment, double max_range, cons
 }
 
 /// The same ray with a direction of about 1, times an exact power of two: it meets the same boxes
-/// at the same ranges. Nothing if some component would not be exact.
+/// at the same ranges. Nothing if some component would not be exact, nor of a zero direction.
 inline std::optional<Ray> withDirectionNearOne(const Ray& ray) {
-  const int exponent = std::ilogb(ray.direction.cwiseAbs().maxCoeff());
+  const double size = ray.direction.cwiseAbs().maxCoeff();
+  if (size == 0.0) {
+    return std::nullopt;
+  }
+  const int exponent = std::ilogb(size);
   Ray scaled = ray;
   for (int i = 0; i < 3; ++i) {
     scaled.direction[i] = std::scalbn(ray.direction[i], -exponent);
