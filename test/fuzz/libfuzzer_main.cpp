@@ -6,6 +6,9 @@
 #include <cstring>
 #include <fstream>
 
+/// AddressSanitizer has an operator new of its own, and libFuzzer a limit: -malloc_limit_mb.
+void box_query::fuzz::limitAllocations(std::size_t /*bytes*/) {}
+
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   const char* const option = "--write-seeds=";
   for (int i = 1; i < *argc; ++i) {
