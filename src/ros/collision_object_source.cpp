@@ -161,6 +161,7 @@ void move(Fields&& fields, BoxChange& change) {
     }
   }
   if (isBadFrame(move.frame)) {
+    move.boxes.clear();
     move.reject(Rejection::kFrame, 1, "'" + move.frame + "'", 0);
   }
   change = std::move(move);

@@ -89,6 +89,10 @@ TEST(CollisionObjectSource, TellsOperationsApart) {
     EXPECT_TRUE(change.boxes.empty());
     EXPECT_EQ(countOf(change, Rejection::kAction), 1U);
   }
+  CollisionObject nowhere = object("shelf", {1, 2}, kMove);
+  nowhere.header.frame_id.clear();
+  EXPECT_TRUE(decode(nowhere).changes.at(0).boxes.empty()) << "no box without a frame";
+  EXPECT_EQ(decode(nowhere).changes.at(0).rejected(), 1U);
   const BoxChange move = decode(object("shelf", {1, 2}, kMove)).changes.at(0);
   EXPECT_EQ(move.kind, BoxChange::Kind::kMove);
   EXPECT_EQ(move.boxes.size(), 3U) << "the pose of the object, and of two shapes";
