@@ -52,12 +52,11 @@ template <typename SlabsType>
 struct Prepared {
   SlabsType slabs;
   bool moderate;  ///< the filter may take it
-  bool compact;   ///< double-double may take it: see bounds::kSmallest
 };
 
 template <typename BoxType>
 auto prepared(const BoxType& box) {
-  return Prepared<decltype(doubleSlabs(box))>{doubleSlabs(box), isModerate(box), isCompact(box)};
+  return Prepared<decltype(doubleSlabs(box))>{doubleSlabs(box), isModerate(box)};
 }
 
 /// The unnormalised frame of an oriented box in double-double: n = |q|^2, axes[i] = column i of n

@@ -14,14 +14,10 @@ struct PreparedBox {
   enum class Kind { kAligned, kOriented, kExactOnly };
 
   explicit PreparedBox(const AlignedBox& box)
-      : kind(isModerate(box) ? Kind::kAligned : Kind::kExactOnly),
-        compact(isCompact(box)),
-        aligned(doubleSlabs(box)) {}
+      : kind(isModerate(box) ? Kind::kAligned : Kind::kExactOnly), aligned(doubleSlabs(box)) {}
 
   explicit PreparedBox(const OrientedBox& box)
-      : kind(isModerate(box) ? Kind::kOriented : Kind::kExactOnly),
-        compact(isCompact(box)),
-        oriented(doubleSlabs(box)) {}
+      : kind(isModerate(box) ? Kind::kOriented : Kind::kExactOnly), oriented(doubleSlabs(box)) {}
 
   explicit PreparedBox(const Box& box)
       : PreparedBox(std::holds_alternative<AlignedBox>(box)
@@ -30,7 +26,6 @@ struct PreparedBox {
 
   /// kExactOnly: not moderate.
   Kind kind;
-  bool compact;
   union {
     AlignedSlabs aligned;
     OrientedSlabs oriented;

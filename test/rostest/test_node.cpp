@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the node starts and stops. BQ_NODE is its path.
+#include "rostest/long_batch.h"
+
 #include <box_query/CastRays.h>
 #include <box_query/GetScene.h>
 
@@ -137,28 +139,11 @@ TEST(Node, EndsInTheMiddleOfABatch) {
   Process process({"__name:=busy", "boxes:=many_boxes"});
   ros::NodeHandle nh;
   ros::Publisher publisher = nh.advertise<visualization_msgs::Marker>("many_boxes", 1, true);
-  visualization_msgs::Marker boxes;
-  boxes.header.frame_id = "map";
-  boxes.type = visualization_msgs::Marker::CUBE_LIST;
-  // Rays pass through the corner of every box's bounds and miss the box, so that each is looked at.
-  boxes.pose.orientation.x = std::sqrt(0.5 - std::sqrt(0.125));
-  boxes.pose.orientation.w = std::sqrt(0.5 + std::sqrt(0.125));
-  boxes.scale.x = boxes.scale.y = boxes.scale.z = 0.5;
-  boxes.points.resize(20000);
-  for (std::size_t i = 0; i < boxes.points.size(); ++i) {
-    boxes.points[i].x = static_cast<double>(i);
-  }
+  const visualization_msgs::Marker boxes = box_query::test::boxesOfLongBatch();
   publisher.publish(boxes);
   ASSERT_TRUE(ros::service::waitForService("/busy/cast_rays", ros::Duration(10)));
 
-  box_query::CastRays batch;  // of minutes
-  batch.request.header.frame_id = "map";
-  batch.request.origins.resize(1);
-  batch.request.origins[0].y = batch.request.origins[0].z = 0.3;
-  batch.request.directions.resize(1000000);
-  for (auto& direction : batch.request.directions) {
-    direction.x = 1;
-  }
+  box_query::CastRays batch = box_query::test::longBatch();
   box_query::GetScene scene;
   for (int i = 0; i < 1000 && scene.response.poses.empty(); ++i) {
     ros::service::call("/busy/get_scene", scene);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How the nodelet comes into a manager and leaves it. What it answers is tested by
 // nodelet_server.test and nodelet_markers.test.
+#include "rostest/long_batch.h"
 #include "rostest/server_fixture.h"
 
 #include <algorithm>
@@ -141,23 +142,11 @@ TEST(Nodelet, DoesNotFinishABatchOfMinutes) {
   ASSERT_TRUE(load("/box_query"));
   ArrayTalker talker("boxes");
   ASSERT_TRUE(talker.isHeard());
-  // Rays pass through the corner of every box's bounds and miss the box.
-  visualization_msgs::Marker boxes = cube("map", 1, 0);
-  boxes.type = visualization_msgs::Marker::CUBE_LIST;
-  boxes.pose.orientation.x = std::sqrt(0.5 - std::sqrt(0.125));
-  boxes.pose.orientation.w = std::sqrt(0.5 + std::sqrt(0.125));
-  boxes.scale.x = boxes.scale.y = boxes.scale.z = 0.5;
-  boxes.points.resize(20000);
-  for (std::size_t i = 0; i < boxes.points.size(); ++i) {
-    boxes.points[i].x = static_cast<double>(i);
-  }
+  const visualization_msgs::Marker boxes = boxesOfLongBatch();
   talker.say(array({boxes}));
   ASSERT_TRUE(nodeHas(boxes.points.size()));
 
-  CastRays batch;
-  batch.request.header.frame_id = "map";
-  batch.request.origins.assign(1, point(0, 0.3, 0.3));
-  batch.request.directions.assign(1000000, vector(1, 0, 0));
+  CastRays batch = longBatch();
   auto answered = std::async(std::launch::async,
                              [&] { return ros::service::call("/box_query/cast_rays", batch); });
   ASSERT_EQ(answered.wait_for(std::chrono::seconds(2)), std::future_status::timeout);

@@ -58,7 +58,7 @@ struct Parameters {
   double build_ahead = 2.0;
   /// Past snapshots that ~get_scene can still return.
   int kept_scenes = 100;
-  /// Boxes in all of them together, some 500 bytes each; the oldest go first, the latest stays.
+  /// Boxes in all of them together, some 300 bytes each; the oldest go first, the latest stays.
   int max_kept_boxes = 1000000;
   /// [s] of ROS time that past scenes are remembered for requests with a `scene_time`; 0: none are.
   double history = 0.0;
