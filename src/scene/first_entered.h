@@ -68,11 +68,11 @@ class FirstEntered {
       return;
     }
     if (c.certain) {
-      take({c.box, c.enter_lo, c.enter_hi, std::nullopt});
+      take({c.box, c.enter_lo, c.enter_hi});
     } else if (crossesThinSlab<T>(component(), boxes_.prepared(c.box))) {
-      take({c.box, c.enter_lo, c.exit_hi, std::nullopt});
+      take({c.box, c.enter_lo, c.exit_hi});
     } else {
-      Entry entry{c.box, c.enter_lo, c.exit_hi, std::nullopt};
+      Entry entry{c.box, c.enter_lo, c.exit_hi};
       if (solutionOf(entry).num_points > 0) {
         take(std::move(entry));
       }
@@ -102,8 +102,12 @@ class FirstEntered {
  private:
   static constexpr double kInf = std::numeric_limits<double>::infinity();
 
-  /// A box that is certainly met, entered at a parameter in [enter_lo, enter_hi].
+  /// A box that is certainly met, entered at a parameter in [enter_lo, enter_hi]. With constructors
+  /// of its own: for others GCC clears the room for the solution first, 2 kB.
   struct Entry {
+    Entry() {}  // NOLINT(modernize-use-equals-default)
+    Entry(std::size_t number, double lo, double hi) : box(number), enter_lo(lo), enter_hi(hi) {}
+
     std::size_t box = kNoBox;
     double enter_lo = kInf;
     double enter_hi = kInf;
