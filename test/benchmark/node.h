@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,8 @@ struct CallRow {
 };
 
 struct CallOptions {
-  int threads = 1;  ///< ~batch_threads of the node, and the library's
+  std::regex only{".*"};  ///< "SERVICE ASKS BOXES QUERIES THREADS"
+  int threads = 1;        ///< ~batch_threads of the node, and the library's
   std::vector<std::size_t> boxes = {32, 1000};
   std::vector<std::size_t> queries = {1, 100, 10000};
   int connections = 15;
@@ -69,6 +71,7 @@ struct BoxesRow {
 };
 
 struct BoxesOptions {
+  std::regex only{".*"};  ///< "boxes BOXES HZ"
   std::vector<std::size_t> boxes = {100, 1000, 10000};
   std::vector<double> rates = {10.0, 30.0};
   double seconds = 10.0;  ///< a row

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <sstream>
 #include <thread>
 
 namespace box_query::benchmark {
@@ -183,7 +184,11 @@ void measureBoxes(NodeClient& client, const BoxesOptions& options,
                   const std::function<void(const BoxesRow&)>& print) {
   for (const std::size_t boxes : options.boxes) {
     for (const double rate : options.rates) {
-      print(measure(boxes, rate, options.seconds, client));
+      std::ostringstream name;
+      name << "boxes " << boxes << ' ' << rate;
+      if (std::regex_search(name.str(), options.only)) {
+        print(measure(boxes, rate, options.seconds, client));
+      }
     }
   }
 }

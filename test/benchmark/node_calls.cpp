@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <sstream>
 
 namespace box_query::benchmark {
 namespace {
@@ -113,28 +114,50 @@ class Calls {
   CallRow& row_;
 };
 
-/// Numbers the question, so that the empty service knows a new one.
-template <class Service>
-CallRow measureQuestion(ros::NodeHandle& nh, BatchQuestion<Service> question, std::size_t boxes,
-                        const CallOptions& options) {
-  static std::uint32_t number = 0;
-  question.request.header.seq = ++number;
-  CallRow row;
-  row.service = question.service;
-  row.asks = question.asks;
-  row.boxes = boxes;
-  row.queries = question.queries;
-  row.threads = options.threads;
-  const bool many = question.queries >= kMany;
-  Calls<Service>(nh, question, row)
-      .measure(options.connections, std::max(1, options.rounds / (many ? 4 : 1)));
-  return row;
+std::string nameOf(const CallRow& row) {
+  std::ostringstream name;
+  name << row.service << ' ' << row.asks << ' ' << row.boxes << ' ' << row.queries << ' '
+       << row.threads;
+  return name.str();
 }
+
+/// Measures those questions that are wanted.
+class Questioner {
+ public:
+  Questioner(ros::NodeHandle& nh, const CallOptions& options,
+             const std::function<void(const CallRow&)>& print)
+      : nh_(nh), options_(options), print_(print) {}
+
+  template <class Service>
+  void ask(std::vector<BatchQuestion<Service>> questions, std::size_t boxes) {
+    for (BatchQuestion<Service>& question : questions) {
+      CallRow row;
+      row.service = question.service;
+      row.asks = question.asks;
+      row.boxes = boxes;
+      row.queries = question.queries;
+      row.threads = options_.threads;
+      if (std::regex_search(nameOf(row), options_.only)) {
+        question.request.header.seq = ++number_;  // a new one to the empty service
+        const int rounds = question.queries < kMany ? options_.rounds : (options_.rounds + 3) / 4;
+        Calls<Service>(nh_, question, row).measure(options_.connections, rounds);
+        print_(row);
+      }
+    }
+  }
+
+ private:
+  ros::NodeHandle& nh_;
+  const CallOptions& options_;
+  const std::function<void(const CallRow&)>& print_;
+  std::uint32_t number_ = 0;
+};
 
 }  // namespace
 
 void measureCalls(NodeClient& client, const CallOptions& options,
                   const std::function<void(const CallRow&)>& print) {
+  Questioner questioner(client.nh, options, print);
   const std::size_t most = *std::max_element(options.queries.begin(), options.queries.end());
   for (const std::size_t boxes : options.boxes) {
     const SpeedScene known = makeWorkload("sparse", boxes, most, 7).scenes.front();
@@ -143,12 +166,8 @@ void measureCalls(NodeClient& client, const CallOptions& options,
     for (const std::size_t queries : options.queries) {
       const std::vector<Ray> rays(known.rays.begin(),
                                   known.rays.begin() + static_cast<std::ptrdiff_t>(queries));
-      for (const auto& question : rayQuestions(scene, rays, options.threads)) {
-        print(measureQuestion(client.nh, question, boxes, options));
-      }
-      for (const auto& question : segmentQuestions(scene, rays, options.threads)) {
-        print(measureQuestion(client.nh, question, boxes, options));
-      }
+      questioner.ask(rayQuestions(scene, rays, options.threads), boxes);
+      questioner.ask(segmentQuestions(scene, rays, options.threads), boxes);
     }
   }
 }

@@ -24,9 +24,10 @@ median over connections.
 Boxes: from a message on the wire to the first answer from its boxes; beside a plain roscpp node in the same process
 that builds a Scene of each message. Behind them what roscpp's decoding and that build take on their own.
 
-  --quick     fewer scenes and calls: under a minute, else two
-  --csv FILE  write the table there too
-  --bars      end with what is promised of the ratios, a line a bar
+  --quick       fewer scenes and calls: under a minute, else two
+  --only REGEX  only rows whose "SERVICE ASKS BOXES QUERIES THREADS" (0: all) or "boxes BOXES HZ" matches
+  --csv FILE    write the table there too
+  --bars        end with what is promised of the ratios, a line a bar
 
 Where other programs run, "chrt -r 1" before the command of the program keeps them from being measured too.
 )";
@@ -34,6 +35,7 @@ Where other programs run, "chrt -r 1" before the command of the program keeps th
 struct Arguments {
   bool quick = false;
   bool bars = false;
+  std::regex only{".*"};
   std::string csv;
 };
 
@@ -44,6 +46,8 @@ bool parse(int argc, char** argv, Arguments& arguments) {
       arguments.quick = true;
     } else if (std::strcmp(argv[i], "--bars") == 0) {
       arguments.bars = true;
+    } else if (std::strcmp(argv[i], "--only") == 0 && i + 1 < argc) {
+      arguments.only = std::regex(argv[++i]);
     } else if (std::strcmp(argv[i], "--csv") == 0 && i + 1 < argc) {
       arguments.csv = argv[++i];
     } else {
@@ -64,6 +68,7 @@ struct Both {
 void run(const Arguments& arguments) {
   CallOptions call_options;
   BoxesOptions boxes_options;
+  call_options.only = boxes_options.only = arguments.only;
   if (arguments.quick) {
     call_options.boxes = {1000};
     call_options.connections = 11;
