@@ -5,12 +5,18 @@
 
 #include <box_query/ros/scene_monitor.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <initializer_list>
 #include <vector>
 
 namespace box_query {
+
+using BoxIndices = std::vector<std::int32_t>;
+
+/// Replaces each index of a box in `arrays`, none of which is negative but for -1, which stays, by
+/// the place of that index among those that there are.
+/// @return these, each once, ascending
+BoxIndices renumber(std::initializer_list<BoxIndices*> arrays);
 
 template <class Response>
 void appendName(const BoxName& name, Response& response) {
@@ -20,27 +26,12 @@ void appendName(const BoxName& name, Response& response) {
   response.box_labels.push_back(name.label);
 }
 
-/// Renumbers `indices`, which are those of the scene or -1, and lists the boxes that they name in
-/// the response: each once, in the order of the scene.
+/// Renumbers `arrays`, of indices of the scene or -1, and lists the boxes that they name in the
+/// response: each once, in the order of the scene.
 template <class Response>
-void nameBoxes(const Snapshot& snapshot, std::initializer_list<std::vector<std::int32_t>*> indices,
+void nameBoxes(const Snapshot& snapshot, std::initializer_list<BoxIndices*> arrays,
                Response& response) {
-  std::vector<std::int32_t> boxes;
-  for (const auto* array : indices) {
-    std::copy_if(array->begin(), array->end(), std::back_inserter(boxes),
-                 [](std::int32_t box) { return box >= 0; });
-  }
-  std::sort(boxes.begin(), boxes.end());
-  boxes.erase(std::unique(boxes.begin(), boxes.end()), boxes.end());
-  for (auto* array : indices) {
-    for (std::int32_t& box : *array) {
-      if (box >= 0) {
-        box = static_cast<std::int32_t>(std::lower_bound(boxes.begin(), boxes.end(), box) -
-                                        boxes.begin());
-      }
-    }
-  }
-  for (const std::int32_t box : boxes) {
+  for (const std::int32_t box : renumber(arrays)) {
     appendName(snapshot.names[static_cast<std::size_t>(box)], response);
   }
 }
