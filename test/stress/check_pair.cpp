@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "stress/check_pair.h"
 
-#include "reference/oracle.h"
-
 #include <box_query/distance.h>
 #include <box_query/intersection.h>
 
@@ -89,7 +87,7 @@ void judgePoint(Judge& judge, const std::string& query, const char* what, const 
 }
 
 template <typename Component, typename AnyBox>
-void checkIntersection(const Component& component, const AnyBox& box, const Box& any_box,
+void judgeIntersection(const Component& component, const AnyBox& box, const Box& any_box,
                        const oracle::ExactBox& exact_box, Judge& judge) {
   const oracle::ExactComponent exact_component(component);
   const oracle::Interval exact = oracle::interval(exact_component, exact_box);
@@ -160,16 +158,29 @@ void checkRadius(const Segment& segment, const Box& box, const oracle::ExactComp
 
 }  // namespace
 
-void checkIntersections(const Sample& sample, Tally& tally) {
+void checkIntersection(const Sample& sample, oracle::Kind kind, Tally& tally) {
   Judge judge(sample, tally);
   const oracle::ExactBox exact_box(sample.box);
-  std::visit(
-      [&](const auto& box) {
-        checkIntersection(sample.line(), box, sample.box, exact_box, judge);
-        checkIntersection(sample.ray(), box, sample.box, exact_box, judge);
-        checkIntersection(sample.segment(), box, sample.box, exact_box, judge);
-      },
-      sample.box);
+  const auto check = [&](const auto& component) {
+    std::visit(
+        [&](const auto& box) { judgeIntersection(component, box, sample.box, exact_box, judge); },
+        sample.box);
+  };
+  switch (kind) {
+    case oracle::Kind::kLine:
+      return check(sample.line());
+    case oracle::Kind::kRay:
+      return check(sample.ray());
+    default:
+      check(sample.segment());
+  }
+}
+
+void checkIntersections(const Sample& sample, Tally& tally) {
+  for (const oracle::Kind kind :
+       {oracle::Kind::kLine, oracle::Kind::kRay, oracle::Kind::kSegment}) {
+    checkIntersection(sample, kind, tally);
+  }
 }
 
 void checkDistances(const Sample& sample, Random& random, Tally& tally) {
