@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "scene/parallel.h"
+#include "scene/thread_sanitizer.h"
+
 #include <box_query/batch.h>
 
 #include <algorithm>
+#include <atomic>
 #include <exception>
+#include <limits>
 #include <mutex>
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 namespace box_query {
 namespace {
@@ -20,17 +21,14 @@ class LowestException {
  public:
   void take(std::size_t begin) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (exception_ == nullptr || begin < begin_) {
+    if (begin < begin_) {
       exception_ = std::current_exception();
       begin_ = begin;
     }
   }
   /// Whether what comes at or behind `begin` cannot be the lowest any more.
-  bool isBefore(std::size_t begin) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return exception_ != nullptr && begin_ < begin;
-  }
-  void rethrow() {
+  bool isBefore(std::size_t begin) const { return begin_.load(std::memory_order_relaxed) < begin; }
+  void rethrow() const {
     if (exception_ != nullptr) {
       std::rethrow_exception(exception_);
     }
@@ -39,13 +37,42 @@ class LowestException {
  private:
   std::mutex mutex_;
   std::exception_ptr exception_;
-  std::size_t begin_ = 0;
+  std::atomic<std::size_t> begin_{std::numeric_limits<std::size_t>::max()};
 };
 
-std::size_t threadsFor(int max_threads) {
-  const int cores = tbb::task_arena(tbb::task_arena::automatic).max_concurrency();
-  return static_cast<std::size_t>(std::max(max_threads > 0 ? max_threads : cores, 1));
-}
+/// Work on `count` queries, by parts of kPart.
+class PartsOfWork final : public ParallelWork {
+ public:
+  using Work = std::function<void(std::size_t begin, std::size_t end)>;
+  PartsOfWork(std::size_t count, const Work& work) : count_(count), work_(work) {}
+
+  void runOn(std::size_t threads) {
+    begun_.release();
+    runInParallel((count_ - 1) / kPart + 1, threads, *this);
+    ended_.acquire();
+    lowest_.rethrow();
+  }
+
+  void run(std::size_t first_part, std::size_t end_part) noexcept override {
+    begun_.acquire();
+    const std::size_t begin = first_part * kPart;
+    if (!lowest_.isBefore(begin)) {
+      try {
+        work_(begin, std::min(end_part * kPart, count_));
+      } catch (...) {
+        lowest_.take(begin);
+      }
+    }
+    ended_.release();
+  }
+
+ private:
+  const std::size_t count_;
+  const Work& work_;
+  LowestException lowest_;
+  UnseenOrder begun_;
+  UnseenOrder ended_;
+};
 
 /// forEachPart() with the counters that the options ask for.
 template <typename Work>
@@ -77,31 +104,15 @@ std::vector<Answer> askEach(const std::vector<Query>& queries, const BatchOption
 
 void forEachPart(std::size_t count, int max_threads,
                  const std::function<void(std::size_t begin, std::size_t end)>& work) {
+  const std::size_t wanted = max_threads > 0 ? static_cast<std::size_t>(max_threads) : 0;
   const std::size_t parts = count / kPart + (count % kPart != 0 ? 1 : 0);
-  const std::size_t threads = parts < 2 ? 1 : std::min(parts, threadsFor(max_threads));
-  if (threads < 2) {
-    if (count > 0) {
-      work(0, count);
-    }
-    return;
+  const std::size_t threads =
+      parts < 2 ? 1 : std::min(parts, wanted != 0 ? wanted : defaultThreads());
+  if (threads > 1) {
+    PartsOfWork(count, work).runOn(threads);
+  } else if (count > 0) {
+    work(0, count);
   }
-  LowestException lowest;
-  tbb::task_arena arena(static_cast<int>(threads));
-  arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, parts),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        const std::size_t begin = range.begin() * kPart;
-                        if (lowest.isBefore(begin)) {
-                          return;
-                        }
-                        try {
-                          work(begin, std::min(range.end() * kPart, count));
-                        } catch (...) {
-                          lowest.take(begin);
-                        }
-                      });
-  });
-  lowest.rethrow();
 }
 
 std::vector<Hit> castEach(const Scene& scene, const std::vector<Ray>& rays,
