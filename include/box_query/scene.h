@@ -124,6 +124,9 @@ class MaxRanges {
   explicit MaxRanges(const double* each) : each_(each) {}
 
   double operator[](std::size_t ray) const { return each_ != nullptr ? each_[ray] : same_; }
+  /// That of a ray, and how far behind it that of the next ray is.
+  const double* from(std::size_t ray) const { return each_ != nullptr ? each_ + ray : &same_; }
+  std::size_t distance() const { return each_ != nullptr ? 1 : 0; }
 
  private:
   double same_ = 0.0;

@@ -36,6 +36,7 @@ namespace avx2 {
 #include "kernels/generic/traverse.h"
 #include "kernels/generic/ray_queries.h"
 #include "kernels/generic/together.h"
+#include "kernels/generic/list_together.h"
 #include "kernels/generic/box_distance.h"
 #include "kernels/generic/nearest.h"
 #include "kernels/generic/wide.h"

@@ -8,8 +8,8 @@
 
 namespace box_query::kernels {
 
-using Together = void (*)(const SceneView&, const RayQuery* queries, std::size_t count,
-                          Deliver deliver, void* context);
+using Together = void (*)(const SceneView&, const RayQueries&, Deliver deliver, void* context,
+                          Work& work);
 
 /// The functions of one instruction set.
 struct Kernels {
@@ -24,8 +24,9 @@ struct Kernels {
   /// are left in `found`, or were taken.
   Answer (*any)(const SceneView&, const RayQuery&, Found& found, Take take, void* context);
 
-  /// The same of `count` queries, several of them at a time: while one waits for memory, others go
-  /// on. They call deliver() once for each, in any order.
+  /// The same of many rays, several of them at a time: what one waits for, or looks up, serves
+  /// others. They call deliver() once for each that meets a box or may, in any order, and for no
+  /// other.
   Together closest_together;
   Together any_together;
 

@@ -21,6 +21,7 @@ namespace portable {
 #include "kernels/generic/traverse.h"
 #include "kernels/generic/ray_queries.h"
 #include "kernels/generic/together.h"
+#include "kernels/generic/list_together.h"
 #include "kernels/generic/box_distance.h"
 #include "kernels/generic/nearest.h"
 // clang-format on

@@ -66,7 +66,10 @@ struct SceneView {
   /// i / kBlockSlots is record i. No blocks: it is not.
   const BoxBlock* blocks;
   std::uint32_t num_blocks;
+  /// Of a list of several nodes: slot n is around all of node n.
+  const Bounds* around_nodes;
   const BoxRecord* records;
+  std::uint32_t num_records;
   /// Number of the box in the scene.
   const std::uint32_t* box_of_record;
   alignas(32) double center[4];
@@ -124,6 +127,20 @@ struct Found {
 using Take = double (*)(void* context, const Found& found);
 
 enum class Answer { kNotTaken, kUndecided, kYes };
+
+/// Rays to ask about together.
+struct RayQueries {
+  const double* rays;  ///< origin and direction of each, six numbers, one after the other
+  std::size_t count;
+  const double* max_ranges;    ///< see RayQuery
+  std::size_t range_distance;  ///< from one to the next: 0 if it is the same for all
+  const std::uint64_t* mask;
+
+  double maxRange(std::size_t i) const { return max_ranges[i * range_distance]; }
+  RayQuery operator[](std::size_t i) const {
+    return {rays + 6 * i, rays + 6 * i + 3, false, maxRange(i), mask};
+  }
+};
 
 /// Takes what is found for a query of many, known by its place; null where it has to be asked by
 /// itself.

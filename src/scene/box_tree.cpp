@@ -73,6 +73,12 @@ BoxTree::BoxTree(const std::vector<PreparedBox>& boxes) {
   if (records_.size() <= kInBlocks) {
     blocks_ = blocksOf(records_, center_);
   }
+  if (levels_.size() == 1) {
+    around_nodes_ = emptyBounds();
+    for (std::size_t node = 0; node < levels_.front().size(); ++node) {
+      setSlot(around_nodes_, node, aroundSlots(levels_.front().bounds[node]));
+    }
+  }
 }
 
 /// Finds out what depends on all bounds together.
@@ -115,7 +121,9 @@ kernels::SceneView BoxTree::view() const {
   }
   view.blocks = blocks_.data();
   view.num_blocks = static_cast<std::uint32_t>(blocks_.size());
+  view.around_nodes = &around_nodes_;
   view.records = records_.data();
+  view.num_records = static_cast<std::uint32_t>(records_.size());
   view.box_of_record = box_of_record_.data();
   for (int i = 0; i < 3; ++i) {
     view.center[i] = center_[i];

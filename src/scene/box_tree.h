@@ -68,6 +68,7 @@ class BoxTree {
 
   std::vector<TreeNodes> levels_;
   std::vector<kernels::BoxBlock> blocks_;
+  kernels::Bounds around_nodes_;  ///< of a list
   std::vector<kernels::BoxRecord> records_;
   std::vector<std::uint32_t> box_of_record_;
   std::vector<std::uint32_t> left_out_;

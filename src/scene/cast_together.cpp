@@ -6,6 +6,7 @@
 #include <box_query/scene.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace box_query {
 namespace {
@@ -13,32 +14,44 @@ namespace {
 /// Queries that the kernels get at once: many more than they work on at a time.
 constexpr std::size_t kQueries = 256;
 
-/// Calls take(i, answer, found) for each ray once, in any order.
-template <typename Take>
-void castTogether(kernels::Together together, const kernels::SceneView& view, const Ray* rays,
-                  std::size_t count, const MaxRanges& max_ranges, const BoxMask* mask,
-                  Take&& take) {
+static_assert(sizeof(Ray) == 6 * sizeof(double), "kernels read the six numbers of rays in a row");
+
+/// Sets all answers to those of rays that meet nothing, and calls take(i, answer, found) for each
+/// ray that may meet something.
+template <typename Impl, typename Answer, typename Take>
+void castTogether(const Impl& scene, kernels::Together together, const Ray* rays, std::size_t count,
+                  Answer* answers, const MaxRanges& max_ranges, const BoxMask* mask, Take&& take) {
   struct Context {
     Take& take;
     std::size_t first;
+    bool is_taken[kQueries];
   };
   const auto deliver = [](void* context, std::size_t query, kernels::Answer answer,
                           const kernels::Found* found) {
-    const auto& c = *static_cast<Context*>(context);
-    if (found != nullptr) {
-      countWork(found->work);
-    }
+    auto& c = *static_cast<Context*>(context);
+    c.is_taken[query] = true;
     c.take(c.first + query, answer, found);
   };
   for (std::size_t first = 0; first < count; first += kQueries) {
-    kernels::RayQuery queries[kQueries];
     const std::size_t size = std::min(kQueries, count - first);
-    for (std::size_t i = 0; i < size; ++i) {
-      Vector3 direction;
-      queries[i] = rayQuery(rays[first + i], max_ranges[first + i], mask, direction);
+    std::fill_n(answers + first, size, Answer());
+    const kernels::RayQueries queries{rays[first].origin.data(), size, max_ranges.from(first),
+                                      max_ranges.distance(),
+                                      mask != nullptr ? mask->words() : nullptr};
+    Context context{take, first, {}};
+    kernels::Work work;
+    together(scene.view, queries, deliver, &context, work);
+    countWork(work);
+    if (!scene.tree.left_out().empty()) {
+      kernels::Found nothing;
+      nothing.count = 0;
+      nothing.t_inside = -std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < size; ++i) {
+        if (!context.is_taken[i]) {
+          take(first + i, kernels::Answer::kUndecided, &nothing);
+        }
+      }
     }
-    Context context{take, first};
-    together(view, queries, size, deliver, &context);
   }
 }
 
@@ -46,7 +59,7 @@ void castTogether(kernels::Together together, const kernels::SceneView& view, co
 
 void Scene::cast(const Ray* rays, std::size_t count, Hit* hits, MaxRanges max_ranges,
                  const BoxMask* mask) const noexcept {
-  castTogether(impl_->kernels.closest_together, impl_->view, rays, count, max_ranges, mask,
+  castTogether(*impl_, impl_->kernels.closest_together, rays, count, hits, max_ranges, mask,
                [&](std::size_t i, kernels::Answer /*answer*/, const kernels::Found* found) {
                  hits[i] = impl_->hitOf(rays[i], max_ranges[i], mask, found);
                });
@@ -54,7 +67,7 @@ void Scene::cast(const Ray* rays, std::size_t count, Hit* hits, MaxRanges max_ra
 
 void Scene::castClosest(const Ray* rays, std::size_t count, ClosestBox* closest,
                         MaxRanges max_ranges, const BoxMask* mask) const noexcept {
-  castTogether(impl_->kernels.closest_together, impl_->view, rays, count, max_ranges, mask,
+  castTogether(*impl_, impl_->kernels.closest_together, rays, count, closest, max_ranges, mask,
                [&](std::size_t i, kernels::Answer /*answer*/, const kernels::Found* found) {
                  closest[i] = impl_->closestOf(rays[i], max_ranges[i], mask, found);
                });
@@ -62,7 +75,7 @@ void Scene::castClosest(const Ray* rays, std::size_t count, ClosestBox* closest,
 
 void Scene::castAny(const Ray* rays, std::size_t count, std::uint8_t* any, MaxRanges max_ranges,
                     const BoxMask* mask) const noexcept {
-  castTogether(impl_->kernels.any_together, impl_->view, rays, count, max_ranges, mask,
+  castTogether(*impl_, impl_->kernels.any_together, rays, count, any, max_ranges, mask,
                [&](std::size_t i, kernels::Answer answer, const kernels::Found* found) {
                  const bool is_none = answer == kernels::Answer::kUndecided && found != nullptr &&
                                       found->count == 0 && impl_->tree.left_out().empty();

@@ -27,9 +27,7 @@ void TreeBuilder::build() {
   if (all.size() <= kFlat) {
     levels_.resize(1);
     std::vector<ItemRange> ranges;
-    for (std::size_t begin = 0; begin < all.end; begin += kSlots) {
-      ranges.push_back({begin, std::min(begin + kSlots, all.end)});
-    }
+    partition_.cutFull(all, ranges);
     emitLeaves(ranges, 0);
     return;
   }

@@ -56,6 +56,18 @@ void TreePartition::cut(const ItemRange& range, std::size_t budget, std::size_t 
   cut(right, budget - for_left, level, result);
 }
 
+void TreePartition::cutFull(const ItemRange& range, std::vector<ItemRange>& result) {
+  if (range.size() <= kSlots) {
+    result.push_back(range);
+    return;
+  }
+  const std::size_t leaves = (range.size() + kSlots - 1) / kSlots;
+  const std::size_t middle =
+      split(range, leaves / 2 * kSlots, [](std::size_t /*left*/) { return false; });
+  cutFull({range.begin, middle}, result);
+  cutFull({middle, range.end}, result);
+}
+
 /// Reorders a range of at least two items around where it is best cut, or else behind `fallback`
 /// of them.
 template <typename IsAllowed>

@@ -69,6 +69,9 @@ class TreePartition {
   void cut(const ItemRange& range, std::size_t budget, std::size_t level,
            std::vector<ItemRange>& result);
 
+  /// Appends ranges for leaves that are full, but for the last.
+  void cutFull(const ItemRange& range, std::vector<ItemRange>& result);
+
  private:
   static std::size_t capacity(std::size_t level);
 

@@ -153,28 +153,6 @@ TEST_P(KernelTest, MissNothingInHostileScenes) {
   EXPECT_GT(met, asked / 4);
 }
 
-Vector3 pointOf(const Box& box) {
-  return std::holds_alternative<AlignedBox>(box) ? std::get<AlignedBox>(box).min
-                                                 : std::get<OrientedBox>(box).center;
-}
-
-/// Most at a box. Some along an axis, as lidars and shelves have them: exactly, or all but.
-Ray rayAmong(Random& random, double side, const std::vector<Box>& boxes) {
-  Ray ray{random.uniformVector(-0.2 * side, 1.2 * side), random.uniformVector(-1.0, 1.0)};
-  const auto target = static_cast<std::size_t>(random.below(static_cast<int>(boxes.size())));
-  if (random.chance(0.6)) {
-    ray.direction = pointOf(boxes[target]) - ray.origin;
-  }
-  const int axis = random.below(3);
-  if (random.chance(0.3)) {
-    ray.direction[axis] = random.chance(0.5) ? 0.0 : random.signedMagnitude(-80, -20);
-  }
-  if (random.chance(0.15)) {
-    ray.direction = Vector3::Unit(axis) * random.signedMagnitude(-30, 30);
-  }
-  return ray;
-}
-
 TEST_P(KernelTest, MissNothingAtAnyDepth) {
   for (const std::size_t count : {1, 2, 15, 16, 17, 128, 129, 600, 1300, 12000}) {
     Random random(17, count, 0);

@@ -152,6 +152,11 @@ TEST(Mutations, ShrunkBoundsOfBoxesInFloatAreNoticed) {
   EXPECT_GT(wrongScenes("scene_near_ties", 800), 0U);
 }
 
+TEST(Mutations, ShrunkBoundsOfRaysInLanesAreNoticed) {
+  const Spoilt<double> spoilt(float_bounds::kInLanes, 0.0);
+  EXPECT_GT(wrongScenes("scene_near_ties", 800), 0U);
+}
+
 TEST(Mutations, PlanesThatAreNotMovedApartForFlatRaysAreNoticed) {
   const Spoilt<double> spoilt(float_bounds::kFlat, 0.0);
   EXPECT_GT(wrongScenes("scene_lattice", 800), 0U);

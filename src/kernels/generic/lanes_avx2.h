@@ -46,6 +46,13 @@ static inline Float16 orZeroWhereZero(Float16 a, Float16 b) {
   return {_mm256_and_ps(_mm256_cmp_ps(b.lo, zero, _CMP_NEQ_OQ), a.lo),
           _mm256_and_ps(_mm256_cmp_ps(b.hi, zero, _CMP_NEQ_OQ), a.hi)};
 }
+static inline Float16 magnitude(Float16 a) {
+  return {magnitude(Float8{a.lo}).v, magnitude(Float8{a.hi}).v};
+}
+/// a times -1 where b is negative.
+static inline Float16 withSignOf(Float16 a, Float16 b) {
+  return {withSignOf(Float8{a.lo}, Float8{b.lo}).v, withSignOf(Float8{a.hi}, Float8{b.hi}).v};
+}
 /// (Of a NaN and b, b.)
 static inline Float16 larger(Float16 a, Float16 b) {
   return {_mm256_max_ps(a.lo, b.lo), _mm256_max_ps(a.hi, b.hi)};
@@ -121,4 +128,19 @@ static inline int append(std::uint32_t bits, std::uint32_t base, Float16 near, s
   storeSlots(high, base + 8, list + middle);
   _mm256_storeu_ps(nears + middle, _mm256_permutevar8x32_ps(near.hi, high));
   return middle + __builtin_popcount(bits >> 8);
+}
+
+/// Sixteen rays in lanes: origins relative to a center, and directions, six numbers a ray.
+static inline void loadRays(const double* rays, Double4 center, Float16* origin,
+                            Float16* direction) {
+  FourRays four[4];
+  for (int k = 0; k < 4; ++k) {
+    four[k] = loadFourRays(rays + 24 * k, center);
+  }
+  for (int i = 0; i < 3; ++i) {
+    origin[i] = {_mm256_set_m128(four[1].origin[i], four[0].origin[i]),
+                 _mm256_set_m128(four[3].origin[i], four[2].origin[i])};
+    direction[i] = {_mm256_set_m128(four[1].direction[i], four[0].direction[i]),
+                    _mm256_set_m128(four[3].direction[i], four[2].direction[i])};
+  }
 }

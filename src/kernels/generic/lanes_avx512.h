@@ -49,6 +49,13 @@ static inline Float16 overRoot(Float16 a, Float16 b) {
 static inline Float16 orZeroWhereZero(Float16 a, Float16 b) {
   return {_mm512_maskz_mov_ps(_mm512_cmp_ps_mask(b.v, _mm512_setzero_ps(), _CMP_NEQ_OQ), a.v)};
 }
+static inline Float16 magnitude(Float16 a) {
+  return {_mm512_andnot_ps(_mm512_set1_ps(-0.0F), a.v)};
+}
+/// a times -1 where b is negative.
+static inline Float16 withSignOf(Float16 a, Float16 b) {
+  return {_mm512_xor_ps(a.v, _mm512_and_ps(b.v, _mm512_set1_ps(-0.0F)))};
+}
 /// (Of a NaN and b, b.)
 static inline Float16 larger(Float16 a, Float16 b) {
   return {_mm512_maskz_max_ps(kAllLanes, a.v, b.v)};
@@ -85,4 +92,22 @@ static inline int append(std::uint32_t bits, std::uint32_t base, Float16 near, s
                          float* nears, int count) {
   _mm512_storeu_ps(nears + count, _mm512_maskz_compress_ps(static_cast<__mmask16>(bits), near.v));
   return append(bits, base, list, count);
+}
+
+/// Sixteen rays in lanes: origins relative to a center, and directions, six numbers a ray.
+static inline void loadRays(const double* rays, Double4 center, Float16* origin,
+                            Float16* direction) {
+  FourRays four[4];
+  for (int k = 0; k < 4; ++k) {
+    four[k] = loadFourRays(rays + 24 * k, center);
+  }
+  const auto joined = [](__m128 a, __m128 b, __m128 c, __m128 d) -> Float16 {
+    const __m512 low = _mm512_castps256_ps512(_mm256_set_m128(b, a));
+    return {_mm512_maskz_insertf32x8(kAllLanes, low, _mm256_set_m128(d, c), 1)};
+  };
+  for (int i = 0; i < 3; ++i) {
+    origin[i] = joined(four[0].origin[i], four[1].origin[i], four[2].origin[i], four[3].origin[i]);
+    direction[i] = joined(four[0].direction[i], four[1].direction[i], four[2].direction[i],
+                          four[3].direction[i]);
+  }
 }

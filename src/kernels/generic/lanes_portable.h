@@ -226,12 +226,14 @@ template <int kLanes>
 static inline Floats<kLanes> operator/(const Floats<kLanes>& a, const Floats<kLanes>& b) {
   return each<kLanes>([&](int i) { return a.v[i] / b.v[i]; });
 }
-static inline Float8 magnitude(const Float8& a) {
-  return each<kBlockSlots>([&](int i) { return floatOf(bitsOf(a.v[i]) & ~bitsOf(quad(-0.0F))); });
+template <int kLanes>
+static inline Floats<kLanes> magnitude(const Floats<kLanes>& a) {
+  return each<kLanes>([&](int i) { return floatOf(bitsOf(a.v[i]) & ~bitsOf(quad(-0.0F))); });
 }
 /// a times -1 where b is negative.
-static inline Float8 withSignOf(const Float8& a, const Float8& b) {
-  return each<kBlockSlots>(
+template <int kLanes>
+static inline Floats<kLanes> withSignOf(const Floats<kLanes>& a, const Floats<kLanes>& b) {
+  return each<kLanes>(
       [&](int i) { return floatOf(bitsOf(a.v[i]) ^ (bitsOf(b.v[i]) & bitsOf(quad(-0.0F)))); });
 }
 /// a / b; an estimate would do.
@@ -304,4 +306,19 @@ static inline int append(std::uint32_t bits, std::uint32_t base, const Float16& 
     list[count++] = base + static_cast<std::uint32_t>(slot);
   }
   return count;
+}
+
+/// Sixteen rays in lanes: origins relative to a center, and directions, six numbers a ray.
+static inline void loadRays(const double* rays, const Double4& center, Float16* origin,
+                            Float16* direction) {
+  for (int i = 0; i < 3; ++i) {
+    alignas(64) float o[kSlots];
+    alignas(64) float d[kSlots];
+    for (int k = 0; k < kSlots; ++k) {
+      o[k] = static_cast<float>(rays[6 * k + i] - center.v[i]);
+      d[k] = static_cast<float>(rays[6 * k + 3 + i]);
+    }
+    origin[i] = load16(o);
+    direction[i] = load16(d);
+  }
 }

@@ -211,3 +211,23 @@ static inline float smallestLane(Float8 a) {
   m = _mm_min_ps(m, _mm_movehl_ps(m, m));
   return _mm_cvtss_f32(_mm_min_ss(m, _mm_movehdup_ps(m)));
 }
+
+/// Four rays in lanes: origins relative to a center, and directions, six numbers a ray.
+struct FourRays {
+  __m128 origin[3];
+  __m128 direction[3];
+};
+
+static inline FourRays loadFourRays(const double* rays, Double4 center) {
+  // Of the center (x, y, z, 0), what is to be taken from (z, and the direction).
+  const __m256d z = _mm256_permute4x64_pd(center.v, _MM_SHUFFLE(3, 3, 3, 2));
+  __m128 head[4];
+  __m128 tail[4];
+  for (int k = 0; k < 4; ++k) {
+    head[k] = _mm256_cvtpd_ps(_mm256_sub_pd(_mm256_loadu_pd(rays + 6 * k), center.v));
+    tail[k] = _mm256_cvtpd_ps(_mm256_sub_pd(_mm256_loadu_pd(rays + 6 * k + 2), z));
+  }
+  _MM_TRANSPOSE4_PS(head[0], head[1], head[2], head[3]);
+  _MM_TRANSPOSE4_PS(tail[0], tail[1], tail[2], tail[3]);
+  return {{head[0], head[1], head[2]}, {tail[1], tail[2], tail[3]}};
+}

@@ -76,30 +76,44 @@ static inline void setForBlocks(Double4 relative, const RayQuery& query, double 
   f.setRange(0.0F, f.roundedUp(t_end));
 }
 
-/// Prepares a ray for the boxes of a scene.
-static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray& ray) {
+/// What a ray is prepared from.
+struct RayParts {
+  Double4 origin;
+  Double4 direction;
+  Double4 size;      ///< of the direction
+  Double4 relative;  ///< the origin, to the center of the scene
+  Double4 scale;     ///< the largest size, in the first three lanes
+};
+
+static inline RayParts partsOf(const SceneView& view, const RayQuery& query) {
+  RayParts p;
+  p.origin = lanes4(query.origin);
+  p.direction = lanes4(query.direction);
+  p.size = magnitude(p.direction);
+  p.relative = p.origin - load4(view.center);
+  p.scale = larger(larger(p.size, turned(p.size)), turnedTwice(p.size));
+  return p;
+}
+
+/// Prepares what is compared in double.
+/// @return whether the ray is taken
+static inline bool prepareInDouble(const SceneView& view, const RayQuery& query, const RayParts& p,
+                                   Ray& ray) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const Double4 origin = lanes4(query.origin);
-  const Double4 direction = lanes4(query.direction);
-  const Double4 size = magnitude(direction);
-  const Double4 relative = origin - load4(view.center);
-  const Double4 scale = larger(larger(size, turned(size)), turnedTwice(size));
   ray.t_inside = 0.0;
-  FloatRay& f = ray.in_float;
-  f.scale = firstLane(scale);
   const Double4 is_fit =
-      isBetween(magnitude(origin), exact::bounds::kTiniest, exact::bounds::kLargest) &
-      isBetween(size, exact::bounds::kSmallestComponent, exact::bounds::kLargest) &
-      isNotBelow(all4(kFarthestOrigin), magnitude(relative)) &
-      isNotBelow(scale, all4(exact::bounds::kSmallestDirection));
+      isBetween(magnitude(p.origin), exact::bounds::kTiniest, exact::bounds::kLargest) &
+      isBetween(p.size, exact::bounds::kSmallestComponent, exact::bounds::kLargest) &
+      isNotBelow(all4(kFarthestOrigin), magnitude(p.relative)) &
+      isNotBelow(p.scale, all4(exact::bounds::kSmallestDirection));
   if (signs3(is_fit) != 7U) {
-    return Outcome::kNotTaken;
+    return false;
   }
   ray.origin = query.origin;
   ray.direction = query.direction;
-  ray.signs = direction;
+  ray.signs = p.direction;
   if (view.has_aligned) {
-    ray.inverse = all4(1.0) / direction;
+    ray.inverse = all4(1.0) / p.direction;
   }
   ray.own_end = query.has_end ? 1.0 : kInfinity;
   ray.t_end = ray.own_end;
@@ -111,7 +125,19 @@ static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray&
     // 1 - x is below 1 / (1 + x), and sooner there.
     ray.t_inside = t * (2.0 - exact::bounds::kInflate) - exact::bounds::kUnderflow;
   }
+  return true;
+}
 
+/// Prepares a ray for the boxes of a scene.
+static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray& ray) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const RayParts parts = partsOf(view, query);
+  const auto& [origin, direction, size, relative, scale] = parts;
+  FloatRay& f = ray.in_float;
+  f.scale = firstLane(scale);
+  if (!prepareInDouble(view, query, parts, ray)) {
+    return Outcome::kNotTaken;
+  }
   f.for_blocks = view.num_blocks > 0 && f.scale <= kLongestInBlocks &&
                  f.scale >= 1.0 / kLongestInBlocks &&
                  notBelow3(all4(kFarthestInBlocks), magnitude(relative)) == 7U;

@@ -18,7 +18,8 @@ struct Companion {
   Ray ray;
   Found found;
   Visit visit;
-  std::size_t query;
+  std::size_t number;  ///< of the query
+  RayQuery query;
   bool gave_up;  ///< more candidates than there is room for
   float begin;
   float length;
@@ -89,15 +90,78 @@ struct Company {
   }
 };
 
-static inline bool areTakenTogether(const SceneView& view) {
-  return view.depth > 1 && view.levels[0].nodes <= kLargestNumber / kSlots;
+/// Takes no candidates, and so ends a search that has more of them than there is room for.
+static double giveUp(void* gave_up, const Found& /*found*/) {
+  *static_cast<bool*>(gave_up) = true;
+  return -std::numeric_limits<double>::infinity();
 }
 
-/// @param visitOf visitOf(companion) begins a search
-/// @param finish finish(companion, outcome) is called once for each query
-template <typename Visit, typename VisitOf, typename Finish>
-static void searchTogether(const SceneView& view, const RayQuery* queries, std::size_t count,
-                           VisitOf&& visitOf, Finish&& finish) {
+/// What is asked of each ray: which box is the closest.
+struct AskClosest {
+  using Visit = ClosestVisit;
+
+  static Visit visitOf(const SceneView& view, Companion<Visit>& c) {
+    return closestVisit(view, c.query, c.ray, c.found, giveUp, &c.gave_up);
+  }
+  static Answer answerOf(Companion<Visit>& c) {
+    c.visit.dropLater();
+    return Answer::kUndecided;
+  }
+  static Answer askAlone(const SceneView& view, const RayQuery& query, Found& found, Take take,
+                         void* context) {
+    return closest(view, query, found, take, context) ? Answer::kUndecided : Answer::kNotTaken;
+  }
+};
+
+/// Whether any box is met.
+struct AskAny {
+  using Visit = AnyVisit;
+
+  static Visit visitOf(const SceneView& view, Companion<Visit>& c) {
+    return anyVisit(view, c.query, c.ray, c.found, giveUp, &c.gave_up);
+  }
+  static Answer answerOf(const Companion<Visit>& c) {
+    return c.visit.is_met ? Answer::kYes : Answer::kUndecided;
+  }
+  static Answer askAlone(const SceneView& view, const RayQuery& query, Found& found, Take take,
+                         void* context) {
+    return any(view, query, found, take, context);
+  }
+};
+
+/// Where what is found goes.
+struct Delivery {
+  Deliver deliver;
+  void* context;
+  Work& work;
+
+  void take(std::size_t number, Answer answer, bool gave_up, const Found& found) const {
+    if (answer == Answer::kNotTaken || gave_up) {
+      deliver(context, number, Answer::kNotTaken, nullptr);
+      return;
+    }
+    work.nodes += found.work.nodes;
+    work.boxes += found.work.boxes;
+    work.turned_boxes += found.work.turned_boxes;
+    if (answer == Answer::kYes || found.count > 0) {
+      deliver(context, number, answer, &found);
+    }
+  }
+};
+
+template <typename Ask>
+static void askAlone(const SceneView& view, const RayQueries& queries, std::size_t number,
+                     const Delivery& to) {
+  Found found;
+  bool gave_up = false;
+  const Answer answer = Ask::askAlone(view, queries[number], found, giveUp, &gave_up);
+  to.take(number, answer, gave_up, found);
+}
+
+/// Down a tree.
+template <typename Ask>
+static void searchTree(const SceneView& view, const RayQueries& queries, const Delivery& to) {
+  using Visit = typename Ask::Visit;
   Companion<Visit> rays[kRaysTogether];
   const Company<Visit> company{view, rays};
   const int top = view.depth - 1;
@@ -109,17 +173,19 @@ static void searchTogether(const SceneView& view, const RayQuery* queries, std::
     int listed = 0;
     for (std::uint32_t i = 0; i < kRaysTogether; ++i) {
       Companion<Visit>& c = rays[i];
-      while ((under_way & (1U << i)) == 0 && next < count) {
-        c.query = next++;
+      while ((under_way & (1U << i)) == 0 && next < queries.count) {
+        c.number = next++;
+        c.query = queries[c.number];
         c.gave_up = false;
-        const Outcome outcome = begin(view, queries[c.query], c.found, c.ray);
+        const Outcome outcome = begin(view, c.query, c.found, c.ray);
         if (outcome == Outcome::kReady) {
-          c.visit = visitOf(c);
+          c.visit = Ask::visitOf(view, c);
           c.begin = c.inFloat().begin_s;
           c.length = static_cast<float>(view.mean_free_path);
           under_way |= 1U << i;
         } else {
-          finish(c, outcome);
+          to.take(c.number, outcome == Outcome::kMiss ? Answer::kUndecided : Answer::kNotTaken,
+                  false, c.found);
         }
       }
       if ((under_way & (1U << i)) != 0) {
@@ -142,62 +208,9 @@ static void searchTogether(const SceneView& view, const RayQuery* queries, std::
         c.length *= 2.0F;
       } else {
         under_way &= ~(1U << i);
-        finish(c, Outcome::kReady);
+        const Answer answer = Ask::answerOf(c);
+        to.take(c.number, answer, c.gave_up, c.found);
       }
     }
   }
-}
-
-/// Takes no candidates, and so ends a search that has more of them than there is room for.
-static double giveUp(void* gave_up, const Found& /*found*/) {
-  *static_cast<bool*>(gave_up) = true;
-  return -std::numeric_limits<double>::infinity();
-}
-
-static void closestTogether(const SceneView& view, const RayQuery* queries, std::size_t count,
-                            Deliver deliver, void* context) {
-  if (!areTakenTogether(view)) {
-    for (std::size_t i = 0; i < count; ++i) {
-      Found found;
-      bool gave_up = false;
-      const bool taken = closest(view, queries[i], found, giveUp, &gave_up);
-      deliver(context, i, Answer::kUndecided, taken && !gave_up ? &found : nullptr);
-    }
-    return;
-  }
-  searchTogether<ClosestVisit>(
-      view, queries, count,
-      [&](auto& c) {
-        return closestVisit(view, queries[c.query], c.ray, c.found, giveUp, &c.gave_up);
-      },
-      [&](auto& c, Outcome outcome) {
-        if (outcome == Outcome::kReady) {
-          c.visit.dropLater();
-        }
-        const bool known = outcome != Outcome::kNotTaken && !c.gave_up;
-        deliver(context, c.query, Answer::kUndecided, known ? &c.found : nullptr);
-      });
-}
-
-static void anyTogether(const SceneView& view, const RayQuery* queries, std::size_t count,
-                        Deliver deliver, void* context) {
-  if (!areTakenTogether(view)) {
-    for (std::size_t i = 0; i < count; ++i) {
-      Found found;
-      bool gave_up = false;
-      const Answer answer = any(view, queries[i], found, giveUp, &gave_up);
-      const bool known = answer != Answer::kNotTaken && !gave_up;
-      deliver(context, i, answer, known ? &found : nullptr);
-    }
-    return;
-  }
-  searchTogether<AnyVisit>(
-      view, queries, count,
-      [&](auto& c) { return anyVisit(view, queries[c.query], c.ray, c.found, giveUp, &c.gave_up); },
-      [&](auto& c, Outcome outcome) {
-        const bool known = outcome != Outcome::kNotTaken && !c.gave_up;
-        const bool is_met = outcome == Outcome::kReady && c.visit.is_met;
-        deliver(context, c.query, is_met ? Answer::kYes : Answer::kUndecided,
-                known ? &c.found : nullptr);
-      });
 }
