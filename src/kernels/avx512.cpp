@@ -34,6 +34,7 @@ namespace avx512 {
 #include "kernels/generic/ray.h"
 #include "kernels/generic/box_times.h"
 #include "kernels/generic/blocks.h"
+#include "kernels/generic/short_trees.h"
 #include "kernels/generic/traverse.h"
 #include "kernels/generic/ray_queries.h"
 #include "kernels/generic/together.h"

@@ -18,6 +18,7 @@ namespace portable {
 #include "kernels/generic/ray.h"
 #include "kernels/generic/box_times.h"
 #include "kernels/generic/blocks.h"
+#include "kernels/generic/short_trees.h"
 #include "kernels/generic/traverse.h"
 #include "kernels/generic/ray_queries.h"
 #include "kernels/generic/together.h"

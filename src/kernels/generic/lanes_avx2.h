@@ -12,6 +12,14 @@ static inline Float16 load16(const float* p) {
 static inline Float16 all16(float x) {
   return {_mm256_set1_ps(x), _mm256_set1_ps(x)};
 }
+/// A number for all lanes, as it is best kept for long: there already.
+using Kept16 = Float16;
+static inline Kept16 kept16(float x) {
+  return all16(x);
+}
+static inline Float16 all16(Kept16 x) {
+  return x;
+}
 static inline void store16(float* p, Float16 a) {
   _mm256_storeu_ps(p, a.lo);
   _mm256_storeu_ps(p + 8, a.hi);

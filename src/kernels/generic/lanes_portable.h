@@ -191,6 +191,11 @@ static inline Float8 load8(const float* p) {
 static inline Float16 all16(float x) {
   return each<kSlots>([&](int) { return quad(x); });
 }
+/// A number for all lanes, as it is best kept for long: by itself, since there are few registers.
+using Kept16 = float;
+static inline Kept16 kept16(float x) {
+  return x;
+}
 static inline Float8 all8(float x) {
   return each<kBlockSlots>([&](int) { return quad(x); });
 }

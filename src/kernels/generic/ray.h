@@ -15,6 +15,15 @@
 enum class Outcome { kNotTaken, kMiss, kReady };
 
 constexpr double kSteepest = 0x1p40;
+/// Up to it, and from its inverse on, a float holds the square of a direction.
+constexpr double kLongestInFloat = 0x1p60;
+
+/// Long rays go down a tree a stretch at a time, so that what lies behind the first box is not
+/// compared: at first so far [m], then twice as far each time. (Measured; shorter ones spare fewer
+/// nodes than beginning anew costs.)
+static inline float firstStretch(const SceneView& view) {
+  return 3.0F * static_cast<float>(view.mean_free_path);
+}
 
 /// (Not kept in sixteen lanes: what was just written is read back sooner as single floats.)
 struct FloatRay {
@@ -59,8 +68,7 @@ static inline Double4 isBetween(Double4 size, double least, double most) {
          (isNotBelow(size, all4(least)) | isNotBelow(all4(0.0), size));
 }
 
-/// What a ray that is compared with blocks needs. Its end is rough: the root and the quotient that
-/// t_end is made of would be waited for.
+/// What a ray that is compared with blocks needs.
 static inline void setForBlocks(Double4 relative, const RayQuery& query, double t_end,
                                 FloatRay& f) {
   const Double4 reach = magnitude(relative);
@@ -69,10 +77,6 @@ static inline void setForBlocks(Double4 relative, const RayQuery& query, double 
   f.pad = static_cast<float>(size * (bounds::kBlock * bounds::kUp) + bounds::kFloatUnderflow);
   storeAsFloats(f.origin, relative);
   storeAsFloats(f.direction, lanes4(query.direction));
-  if (query.max_range < std::numeric_limits<double>::infinity()) {
-    const auto square = [&](int i) { return f.direction[i] * f.direction[i]; };
-    t_end = query.max_range * aboveInverseRoot((square(0) + square(1)) + square(2));
-  }
   f.setRange(0.0F, f.roundedUp(t_end));
 }
 
@@ -93,6 +97,19 @@ static inline RayParts partsOf(const SceneView& view, const RayQuery& query) {
   p.relative = p.origin - load4(view.center);
   p.scale = larger(larger(p.size, turned(p.size)), turnedTwice(p.size));
   return p;
+}
+
+static inline double squareOf(const double* d) {
+  return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+}
+
+/// Not less than the parameter of the end of a ray, but sooner there than that: a root and a
+/// quotient.
+static inline double roughEnd(const RayQuery& query, double scale, const Ray& ray) {
+  const bool is_limited = query.max_range < std::numeric_limits<double>::infinity();
+  return is_limited && scale <= kLongestInFloat && scale >= 1.0 / kLongestInFloat
+             ? query.max_range * aboveInverseRoot(static_cast<float>(squareOf(query.direction)))
+             : ray.t_end;
 }
 
 /// Prepares what is compared in double.
@@ -119,8 +136,7 @@ static inline bool prepareInDouble(const SceneView& view, const RayQuery& query,
   ray.t_end = ray.own_end;
   ray.t_inside = ray.own_end;
   if (query.max_range < kInfinity) {
-    const double* d = query.direction;
-    const double t = query.max_range / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    const double t = query.max_range / std::sqrt(squareOf(query.direction));
     ray.t_end = t * exact::bounds::kInflate + exact::bounds::kUnderflow;
     // 1 - x is below 1 / (1 + x), and sooner there.
     ray.t_inside = t * (2.0 - exact::bounds::kInflate) - exact::bounds::kUnderflow;
@@ -129,7 +145,8 @@ static inline bool prepareInDouble(const SceneView& view, const RayQuery& query,
 }
 
 /// Prepares a ray for the boxes of a scene.
-static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray& ray) {
+[[gnu::always_inline]] static inline Outcome prepare(const SceneView& view, const RayQuery& query,
+                                                     Ray& ray) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const RayParts parts = partsOf(view, query);
   const auto& [origin, direction, size, relative, scale] = parts;
@@ -138,11 +155,12 @@ static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray&
   if (!prepareInDouble(view, query, parts, ray)) {
     return Outcome::kNotTaken;
   }
+  const double rough_end = roughEnd(query, f.scale, ray);
   f.for_blocks = view.num_blocks > 0 && f.scale <= kLongestInBlocks &&
                  f.scale >= 1.0 / kLongestInBlocks &&
                  notBelow3(all4(kFarthestInBlocks), magnitude(relative)) == 7U;
   if (f.for_blocks) {
-    setForBlocks(relative, query, ray.own_end, f);
+    setForBlocks(relative, query, rough_end, f);
     return Outcome::kReady;
   }
 
@@ -153,9 +171,11 @@ static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray&
   Double4 apart = fused(magnitude(shift), all4(bounds::kShiftError),
                         all4(bounds::kFloatUnderflow) * magnitude(inverse));
   double begin = 0.0;
-  double end = ray.t_end * f.scale * bounds::kUp;
-  if (view.depth > 1 || signs3(is_flat) != 0) {
-    // Clipped to the bounds of the scene; those of a short list are as quickly compared.
+  double end = rough_end * f.scale * bounds::kUp;
+  const bool has_stretches = view.depth > 2 && end > firstStretch(view);
+  if (has_stretches || signs3(is_flat) != 0) {
+    // Clipped to the bounds of the scene, for as few stretches as can be, and so that the end is
+    // finite where planes are moved by it.
     const Double4 lo = load4(view.around[0]);
     const Double4 hi = load4(view.around[1]);
     const Double4 near = (choose(lo, hi, direction) - relative) * inverse;
@@ -183,19 +203,42 @@ static inline Outcome prepare(const SceneView& view, const RayQuery& query, Ray&
   return Outcome::kReady;
 }
 
+/// A ray in float as it is compared with many bounds: read once, since what is written meanwhile
+/// could be the ray for all that the compiler knows.
+struct RayLanes {
+  explicit RayLanes(const FloatRay& ray) : begin(kept16(ray.begin_s)), end(kept16(ray.end_s)) {
+    for (int i = 0; i < 3; ++i) {
+      near_plane[i] = ray.near_side[i] * 3 + i;
+      far_plane[i] = (1 - ray.near_side[i]) * 3 + i;
+      inverse[i] = kept16(ray.inverse[i]);
+      near_shift[i] = kept16(ray.near_shift[i]);
+      far_shift[i] = kept16(ray.far_shift[i]);
+    }
+  }
+
+  std::ptrdiff_t near_plane[3];  ///< Of Bounds, counted through minimum and maximum.
+  std::ptrdiff_t far_plane[3];
+  Kept16 inverse[3];
+  Kept16 near_shift[3];
+  Kept16 far_shift[3];
+  Kept16 begin;
+  Kept16 end;
+};
+
 /// The slots whose bounds the ray may meet between its begin and its end, a bit each.
 /// @param near where it enters them, too early by at most what the floats cannot tell
-static inline std::uint32_t meets(const Bounds& bounds, const FloatRay& ray, Float16& near) {
+static inline std::uint32_t meets(const Bounds& bounds, const RayLanes& ray, Float16& near) {
+  const auto* planes = &bounds.plane[0][0];
   const auto nearPlane = [&](int i) {
-    return multiplyAdd(load16(bounds.plane[ray.near_side[i]][i]), all16(ray.inverse[i]),
+    return multiplyAdd(load16(planes[ray.near_plane[i]]), all16(ray.inverse[i]),
                        all16(ray.near_shift[i]));
   };
   const auto farPlane = [&](int i) {
-    return multiplyAdd(load16(bounds.plane[1 - ray.near_side[i]][i]), all16(ray.inverse[i]),
+    return multiplyAdd(load16(planes[ray.far_plane[i]]), all16(ray.inverse[i]),
                        all16(ray.far_shift[i]));
   };
-  near = larger(larger(nearPlane(0), nearPlane(1)), larger(nearPlane(2), all16(ray.begin_s)));
+  near = larger(larger(nearPlane(0), nearPlane(1)), larger(nearPlane(2), all16(ray.begin)));
   const Float16 far =
-      smaller(smaller(farPlane(0), farPlane(1)), smaller(farPlane(2), all16(ray.end_s)));
+      smaller(smaller(farPlane(0), farPlane(1)), smaller(farPlane(2), all16(ray.end)));
   return notAbove(near, far * all16(static_cast<float>(bounds::kFarther)));
 }

@@ -78,7 +78,7 @@ struct Company {
       Companion<Visit>& c = rayOf(nodes[k]);
       ++c.found.work.nodes;
       Float16 near;
-      const std::uint32_t bits = meets(here.bounds[node], c.inFloat(), near);
+      const std::uint32_t bits = meets(here.bounds[node], RayLanes(c.inFloat()), near);
       listed = append(bits, here.first[node] | rayBits(nodes[k]), near, list, nears, listed);
       if (listed > kListedTogether - kSlots) {
         goOn();
@@ -181,7 +181,7 @@ static void searchTree(const SceneView& view, const RayQueries& queries, const D
         if (outcome == Outcome::kReady) {
           c.visit = Ask::visitOf(view, c);
           c.begin = c.inFloat().begin_s;
-          c.length = static_cast<float>(view.mean_free_path);
+          c.length = firstStretch(view);
           under_way |= 1U << i;
         } else {
           to.take(c.number, outcome == Outcome::kMiss ? Answer::kUndecided : Answer::kNotTaken,

@@ -12,16 +12,18 @@ alignas(64) constexpr std::uint32_t kRoots[kSlots] = {0, 1, 2,  3,  4,  5,  6,  
 /// Visits the records below `nodes` that the ray may meet.
 /// @param visit visit(record) -> false to end; may shorten the ray
 template <typename Visit>
-bool descend(const SceneView& view, int level, const std::uint32_t* nodes, int count, FloatRay& ray,
-             Work& work, Visit& visit) {
-  alignas(64) std::uint32_t list[kListed + kSlots];
-  const Level& here = view.levels[level];
-  work.nodes += static_cast<std::uint32_t>(count);
-  int listed = 0;
-  if (level > 0) {
+static bool descend(const SceneView& view, int level, const std::uint32_t* nodes, int count,
+                    FloatRay& ray, Work& work, Visit& visit) {
+  alignas(64) std::uint32_t lists[2][kListed + kSlots];
+  const RayLanes lanes(ray);
+  for (; level > 0; --level) {
+    const Level& here = view.levels[level];
+    std::uint32_t* list = lists[level % 2];
+    work.nodes += static_cast<std::uint32_t>(count);
+    int listed = 0;
     for (int k = 0; k < count; ++k) {
       Float16 near;
-      const std::uint32_t bits = meets(here.bounds[nodes[k]], ray, near);
+      const std::uint32_t bits = meets(here.bounds[nodes[k]], lanes, near);
       listed = append(bits, here.first[nodes[k]], list, listed);
       if (listed > kListed - kSlots) {
         if (!descend(view, level - 1, list, listed, ray, work, visit)) {
@@ -30,8 +32,13 @@ bool descend(const SceneView& view, int level, const std::uint32_t* nodes, int c
         listed = 0;
       }
     }
-    return listed == 0 || descend(view, level - 1, list, listed, ray, work, visit);
+    nodes = list;
+    count = listed;
   }
+  const Level& here = view.levels[0];
+  std::uint32_t* list = lists[0];
+  work.nodes += static_cast<std::uint32_t>(count);
+  int listed = 0;
   alignas(64) float nears[kListed + kSlots];
   const auto visitListed = [&] {
     for (int i = 0; i < listed; ++i) {
@@ -43,7 +50,7 @@ bool descend(const SceneView& view, int level, const std::uint32_t* nodes, int c
   };
   for (int k = 0; k < count; ++k) {
     Float16 near;
-    const std::uint32_t bits = meets(here.bounds[nodes[k]], ray, near);
+    const std::uint32_t bits = meets(here.bounds[nodes[k]], lanes, near);
     listed = append(bits, here.first[nodes[k]], near, list, nears, listed);
     if (listed > kListed - kSlots) {
       if (!visitListed()) {
@@ -55,48 +62,8 @@ bool descend(const SceneView& view, int level, const std::uint32_t* nodes, int c
   return visitListed();
 }
 
-/// Of a tree that is one list: all bounds, or all boxes in float, are compared before any in
-/// double.
 template <typename Visit>
-bool visitList(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
-  constexpr int kWords = 64 / kSlots;  // nodes a word
-  constexpr int kLongest = 8;          // nodes of the longest list
-  alignas(64) float nears[kLongest * kSlots];
-  std::uint64_t words[kLongest / kWords] = {0, 0};
-  if (ray.for_blocks) {
-    work.nodes += view.num_blocks;
-    for (std::uint32_t k = 0; k < view.num_blocks; ++k) {
-      Float8 near;
-      const std::uint64_t bits = meets(view.blocks[k], ray, near);
-      store8(nears + k * kBlockSlots, near);
-      words[0] |= bits << (k * kBlockSlots);
-    }
-  } else {
-    const Level& list = view.levels[0];
-    const auto count = static_cast<int>(list.nodes);
-    work.nodes += list.nodes;
-    for (int k = 0; k < count; ++k) {
-      Float16 near;
-      const std::uint64_t bits = meets(list.bounds[k], ray, near);
-      store16(nears + k * kSlots, near);
-      words[k / kWords] |= bits << (k % kWords * kSlots);
-    }
-  }
-  // Nodes of a list, and blocks, are full, but for the last: slot number and record are the same.
-  for (int w = 0; w < kLongest / kWords; ++w) {
-    for (std::uint64_t bits = words[w]; bits != 0; bits &= bits - 1) {
-      const int record = 64 * w + __builtin_ctzll(bits);
-      if (nears[record] <= ray.end_s * static_cast<float>(bounds::kFarther) &&
-          !visit(static_cast<std::uint32_t>(record))) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-template <typename Visit>
-bool descend(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
+static bool descend(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
   if (view.depth == 1) {
     return visitList(view, ray, work, visit);
   }
@@ -107,13 +74,17 @@ bool descend(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
 /// Visits records from near to far, a stretch of the ray at a time, as long as visit.end() [s] lies
 /// beyond. A record may be visited in more than one stretch.
 template <typename Visit>
-void descendInStretches(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
+static void descendInStretches(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
   if (view.depth == 1) {
     visitList(view, ray, work, visit);
     return;
   }
+  if (view.depth == 2) {
+    visitTwoLevels(view, ray, work, visit);
+    return;
+  }
   float begin = ray.begin_s;
-  auto length = static_cast<float>(view.mean_free_path);
+  float length = firstStretch(view);
   for (;;) {
     const float whole = visit.end();
     const float end = begin + length;

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Trees of one level or two: all roots are compared, then all leaves that the ray may meet, and
+// what is left is a bit each, in words of four nodes.
+
+constexpr int kNodesAWord = 64 / kSlots;
+constexpr int kRootWords = kMostRootNodes / kNodesAWord;
+
+/// Compares the ray with up to kMostRootNodes nodes.
+/// @param nears where it enters each slot, as far as it does
+/// @param met a bit for each slot that it may meet
+static inline void meetsNodes(const Bounds* nodes, int count, const RayLanes& ray, float* nears,
+                              std::uint64_t* met) {
+  for (int w = 0, k = 0; k < count; ++w) {
+    std::uint64_t word = 0;
+    for (int shift = 0; shift < 64 && k < count; shift += kSlots, ++k) {
+      Float16 near;
+      word |= static_cast<std::uint64_t>(meets(nodes[k], ray, near)) << shift;
+      store16(nears + k * kSlots, near);
+    }
+    met[w] = word;
+  }
+}
+
+/// Visits what lies before the end of the ray, of up to four nodes that it was compared with.
+/// @param record record(slot)
+template <typename Record, typename Visit>
+static inline bool visitWord(std::uint64_t met, const float* nears, const FloatRay& ray,
+                             const Record& record, Visit& visit) {
+  for (; met != 0; met &= met - 1) {
+    const int slot = __builtin_ctzll(met);
+    if (nears[slot] <= ray.end_s * static_cast<float>(bounds::kFarther) && !visit(record(slot))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Of a tree that is one list: all bounds, or all boxes in float, are compared before any in
+/// double.
+template <typename Visit>
+static bool visitList(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
+  alignas(64) float nears[kMostRootNodes * kSlots];
+  std::uint64_t met[kRootWords] = {0, 0};
+  if (ray.for_blocks) {
+    work.nodes += view.num_blocks;
+    for (std::uint32_t k = 0; k < view.num_blocks; ++k) {
+      Float8 near;
+      const std::uint64_t bits = meets(view.blocks[k], ray, near);
+      store8(nears + k * kBlockSlots, near);
+      met[0] |= bits << (k * kBlockSlots);
+    }
+  } else {
+    const Level& list = view.levels[0];
+    work.nodes += list.nodes;
+    meetsNodes(list.bounds, static_cast<int>(list.nodes), RayLanes(ray), nears, met);
+  }
+  for (int w = 0; w < kRootWords; ++w) {
+    // Nodes of a list, and blocks, are full, but for the last: slot number and record are the same.
+    const auto record = [w](int slot) { return static_cast<std::uint32_t>(64 * w + slot); };
+    if (!visitWord(met[w], nears + 64 * w, ray, record, visit)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Visits the records of leaves that the ray may meet; four leaves are compared before any record
+/// is looked at.
+/// @param leaves a bit for each that is compared, by its slot among the roots
+template <typename Visit>
+static bool visitLeaves(const SceneView& view, const std::uint64_t* leaves, FloatRay& ray,
+                        Work& work, Visit& visit) {
+  const Level& top = view.levels[1];
+  const Level& here = view.levels[0];
+  const RayLanes lanes(ray);
+  alignas(64) float nears[kNodesAWord * kSlots];
+  std::uint32_t first[kNodesAWord];
+  const auto record = [&first](int slot) {
+    return first[slot / kSlots] + static_cast<std::uint32_t>(slot % kSlots);
+  };
+  for (int w = 0; w < kRootWords; ++w) {
+    for (std::uint64_t bits = leaves[w]; bits != 0;) {
+      std::uint64_t met = 0;
+      for (int shift = 0; shift < 64 && bits != 0; shift += kSlots, bits &= bits - 1) {
+        const int slot = 64 * w + __builtin_ctzll(bits);
+        const std::uint32_t leaf =
+            top.first[slot / kSlots] + static_cast<std::uint32_t>(slot % kSlots);
+        ++work.nodes;
+        Float16 near;
+        met |= static_cast<std::uint64_t>(meets(here.bounds[leaf], lanes, near)) << shift;
+        store16(nears + shift, near);
+        first[shift / kSlots] = here.first[leaf];
+      }
+      if (!visitWord(met, nears, ray, record, visit)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// Visits records from near to far, as long as visit.end() [s] lies beyond: leaves wait until the
+/// stretch of the ray comes in which it enters them.
+template <typename Visit>
+static void visitTwoLevels(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
+  const Level& top = view.levels[1];
+  const auto roots = static_cast<int>(top.nodes);
+  work.nodes += top.nodes;
+  alignas(64) float nears[kMostRootNodes * kSlots];
+  std::uint64_t later[kRootWords] = {0, 0};
+  meetsNodes(top.bounds, roots, RayLanes(ray), nears, later);
+  float length = firstStretch(view);
+  if (!(ray.begin_s + length < ray.end_s)) {
+    visitLeaves(view, later, ray, work, visit);
+    return;
+  }
+  for (float end = ray.begin_s + length;; length *= 2.0F, end += length) {
+    std::uint64_t due[kRootWords] = {0, 0};
+    for (int w = 0, k = 0; k < roots; ++w) {
+      std::uint64_t entered = 0;
+      for (int shift = 0; shift < 64 && k < roots; shift += kSlots, ++k) {
+        entered |= static_cast<std::uint64_t>(notAbove(load16(nears + k * kSlots), all16(end)))
+                   << shift;
+      }
+      due[w] = later[w] & entered;
+      later[w] &= ~entered;
+    }
+    if (!visitLeaves(view, due, ray, work, visit) || (later[0] | later[1]) == 0 ||
+        !(end < visit.end())) {
+      return;
+    }
+  }
+}
