@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/request_checks.h"
 
-#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -31,29 +30,19 @@ void refuse(const Field& field, const std::string& why) {
   throw std::invalid_argument(field.text() + " " + why);
 }
 
-void checkFinite(const Field& field, const Vector3& vector) {
-  if (!vector.allFinite()) {
-    refuse(field, "is " + print(vector) + ": give finite numbers");
-  }
-}
-
-void checkDirection(const Field& field, const Vector3& direction) {
-  checkFinite(field, direction);
-  if (direction.isZero(0)) {
+void refuseVector(const Field& field, const Vector3& vector) {
+  if (vector.allFinite()) {
     refuse(field, "is zero: give a direction of any other length");
   }
+  refuse(field, "is " + print(vector) + ": give finite numbers");
 }
 
-void checkMaxRange(const Field& field, double max_range) {
-  if (!(max_range >= 0)) {
-    refuse(field, "is " + print(max_range) + ": give metres >= 0; 0 or +Inf is unlimited");
-  }
+void refuseMaxRange(const Field& field, double max_range) {
+  refuse(field, "is " + print(max_range) + ": give metres >= 0; 0 or +Inf is unlimited");
 }
 
-void checkRadius(const Field& field, double radius) {
-  if (!(radius >= 0) || std::isinf(radius)) {
-    refuse(field, "is " + print(radius) + ": give finite metres >= 0");
-  }
+void refuseRadius(const Field& field, double radius) {
+  refuse(field, "is " + print(radius) + ": give finite metres >= 0");
 }
 
 void checkLength(const char* name, std::size_t length, std::size_t queries, bool may_be_empty) {

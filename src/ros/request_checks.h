@@ -8,6 +8,7 @@
 #include <box_query/geometry.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -28,11 +29,32 @@ struct Field {
 
 [[noreturn]] void refuse(const Field& field, const std::string& why);
 
-void checkFinite(const Field& field, const Vector3& vector);
-void checkDirection(const Field& field, const Vector3& direction);
+[[noreturn]] void refuseVector(const Field& field, const Vector3& vector);
+[[noreturn]] void refuseMaxRange(const Field& field, double max_range);
+[[noreturn]] void refuseRadius(const Field& field, double radius);
+
+// Inline, since a batch has thousands of each.
+inline void checkFinite(const Field& field, const Vector3& vector) {
+  if (!vector.allFinite()) {
+    refuseVector(field, vector);
+  }
+}
+inline void checkDirection(const Field& field, const Vector3& direction) {
+  if (!direction.allFinite() || direction.isZero(0)) {
+    refuseVector(field, direction);
+  }
+}
 /// 0 and +inf are unlimited.
-void checkMaxRange(const Field& field, double max_range);
-void checkRadius(const Field& field, double radius);
+inline void checkMaxRange(const Field& field, double max_range) {
+  if (!(max_range >= 0)) {
+    refuseMaxRange(field, max_range);
+  }
+}
+inline void checkRadius(const Field& field, double radius) {
+  if (!(radius >= 0) || std::isinf(radius)) {
+    refuseRadius(field, radius);
+  }
+}
 /// An array of one element a query, or a single one for all, or, if `may_be_empty`, none.
 void checkLength(const char* name, std::size_t length, std::size_t queries, bool may_be_empty);
 void checkCount(const char* what, std::size_t count, std::size_t max_queries);
