@@ -10,6 +10,9 @@
 namespace box_query {
 namespace {
 
+/// Of a batch, segments between two looks at whether the node shuts down.
+constexpr std::size_t kSegmentsAtOnce = 128;
+
 Segment segmentIn(const Context& context, const geometry_msgs::Point& start,
                   const geometry_msgs::Point& end, const Field& field) {
   const Segment segment = {context.frame.pointIn(fromMessage(start)),
@@ -58,6 +61,117 @@ void draw(const Segment& segment, Outcome outcome, const Clearance& nearest,
 std::int32_t indexOf(std::size_t box) {
   return box == kNoBox ? -1 : static_cast<std::int32_t>(box);
 }
+
+Outcome outcomeOf(std::uint8_t state) {
+  return state == CheckSegmentsResponse::BLOCKED ? Outcome::kMet
+         : state == CheckSegmentsResponse::CLEAR ? Outcome::kFree
+                                                 : Outcome::kUnknown;
+}
+
+/// What is asked about each segment, and where its answers go.
+class SegmentBatch {
+ public:
+  SegmentBatch(const CheckSegmentsRequest& request, Context& context, const BoxMask* mask,
+               CheckSegmentsResponse& response)
+      : request_(request),
+        context_(context),
+        scene_(context.snapshot.scene),
+        mask_(mask),
+        response_(response),
+        trusted_(response.complete || request.allow_incomplete),
+        want_nearest_(request.want_clearances || request.want_points || request.want_boxes),
+        want_blockage_(request.want_blocked_at || request.want_boxes) {
+    const std::size_t segments = segmentCount(request);
+    const auto wanted = [segments](bool want) { return want ? segments : 0; };
+    const geometry_msgs::Point undefined = toPoint(Vector3::Constant(kNan));
+    response.states.resize(segments, CheckSegmentsResponse::NOT_EVALUATED);
+    response.clearances.resize(wanted(request.want_clearances), kNan);
+    response.points_on_segment.resize(wanted(request.want_points), undefined);
+    response.points_on_box.resize(wanted(request.want_points), undefined);
+    response.blocked_at.resize(wanted(request.want_blocked_at), kNan);
+    response.nearest_boxes.resize(wanted(request.want_boxes), -1);
+    response.blocking_boxes.resize(wanted(request.want_boxes), -1);
+  }
+
+  /// Whether what is known is enough to say that a segment is clear.
+  bool trusted() const { return trusted_; }
+
+  /// @return whether segment `i` is blocked
+  bool answerOne(std::size_t i) {
+    const Segment segment = segmentOf(i);
+    if (want_nearest_) {
+      set(i, nearestOf(segment));
+    }
+    if (!want_blockage_) {
+      return setState(i, !scene_.isClear(segment, radiusOf(i), mask_));
+    }
+    const Blockage blockage = blockageOf(i, segment);
+    set(i, blockage);
+    return setState(i, blockage.blocked);
+  }
+
+  /// The few that are drawn, where somebody looks, are asked again.
+  void draw() {
+    for (std::size_t i = 0; i < response_.states.size() && !context_.drawing.full(); ++i) {
+      if (response_.states[i] == CheckSegmentsResponse::NOT_EVALUATED) {
+        return;
+      }
+      const Segment segment = segmentOf(i);
+      box_query::draw(segment, outcomeOf(response_.states[i]),
+                      want_nearest_ ? nearestOf(segment) : Clearance(),
+                      want_blockage_ ? blockageOf(i, segment) : Blockage(), context_.drawing);
+    }
+  }
+
+ private:
+  Segment segmentOf(std::size_t i) const {
+    const auto [start, end] = endsOf(request_, i);
+    return segmentIn(context_, request_.points[start], request_.points[end], {"points", start});
+  }
+  double radiusOf(std::size_t i) const {
+    return request_.radii.empty() ? 0.0 : elementAt(request_.radii, i);
+  }
+  Clearance nearestOf(const Segment& segment) const { return scene_.clearance(segment, mask_); }
+  Blockage blockageOf(std::size_t i, const Segment& segment) const {
+    return scene_.firstBlockage(segment, radiusOf(i), mask_);
+  }
+
+  void set(std::size_t i, const Clearance& nearest) {
+    if (request_.want_clearances) {
+      response_.clearances[i] = nearest.distance;
+    }
+    if (request_.want_points) {
+      response_.points_on_segment[i] = toPoint(context_.frame.pointBack(nearest.on_segment));
+      response_.points_on_box[i] = toPoint(context_.frame.pointBack(nearest.on_box));
+    }
+    if (request_.want_boxes) {
+      response_.nearest_boxes[i] = indexOf(nearest.box);
+    }
+  }
+  void set(std::size_t i, const Blockage& blockage) {
+    if (request_.want_blocked_at) {
+      response_.blocked_at[i] = blockage.blocked_at;
+    }
+    if (request_.want_boxes) {
+      response_.blocking_boxes[i] = indexOf(blockage.box);
+    }
+  }
+  bool setState(std::size_t i, bool blocked) {
+    response_.states[i] = blocked    ? CheckSegmentsResponse::BLOCKED
+                          : trusted_ ? CheckSegmentsResponse::CLEAR
+                                     : CheckSegmentsResponse::UNKNOWN;
+    return blocked;
+  }
+
+  const CheckSegmentsRequest& request_;
+  Context& context_;
+  const Scene& scene_;
+  const BoxMask* const mask_;
+  CheckSegmentsResponse& response_;
+  const bool trusted_;
+  const bool want_nearest_;
+  const bool want_blockage_;
+};
 
 }  // namespace
 
@@ -145,91 +259,35 @@ void answer(const CheckSegmentRequest& request, Context& context, CheckSegmentRe
 void answer(const CheckSegmentsRequest& request, Context& context,
             CheckSegmentsResponse& response) {
   describeScene(context.snapshot, context.now, response);
-  const Scene& scene = context.snapshot.scene;
   const auto mask = maskOf(BoxFilter(request), context.snapshot);
-  const BoxMask* const looked_at = mask ? &*mask : nullptr;
-  const bool trusted = response.complete || request.allow_incomplete;
-  const bool want_nearest = request.want_clearances || request.want_points || request.want_boxes;
-  const bool want_blockage = request.want_blocked_at || request.want_boxes;
-
+  SegmentBatch batch(request, context, mask ? &*mask : nullptr, response);
   const std::size_t segments = segmentCount(request);
-  const auto wanted = [segments](bool want) { return want ? segments : 0; };
-  const geometry_msgs::Point undefined = toPoint(Vector3::Constant(kNan));
-  response.states.resize(segments, CheckSegmentsResponse::NOT_EVALUATED);
-  response.clearances.resize(wanted(request.want_clearances), kNan);
-  response.points_on_segment.resize(wanted(request.want_points), undefined);
-  response.points_on_box.resize(wanted(request.want_points), undefined);
-  response.blocked_at.resize(wanted(request.want_blocked_at), kNan);
-  response.nearest_boxes.resize(wanted(request.want_boxes), -1);
-  response.blocking_boxes.resize(wanted(request.want_boxes), -1);
-  response.first_blocked = -1;
 
-  const auto segmentOf = [&](std::size_t i) {
-    const auto [start, end] = endsOf(request, i);
-    return segmentIn(context, request.points[start], request.points[end], {"points", start});
-  };
-  const auto answerOne = [&](std::size_t i, bool is_drawn) {
-    checkRunning(context.stopping);
-    const Segment segment = segmentOf(i);
-    const double radius = request.radii.empty() ? 0.0 : elementAt(request.radii, i);
-    Clearance nearest;
-    if (want_nearest) {
-      nearest = scene.clearance(segment, looked_at);
-    }
-    Blockage blockage;
-    if (want_blockage) {
-      blockage = scene.firstBlockage(segment, radius, looked_at);
-    }
-    const bool blocked =
-        want_blockage ? blockage.blocked : !scene.isClear(segment, radius, looked_at);
-
-    response.states[i] = blocked   ? CheckSegmentsResponse::BLOCKED
-                         : trusted ? CheckSegmentsResponse::CLEAR
-                                   : CheckSegmentsResponse::UNKNOWN;
-    if (request.want_clearances) {
-      response.clearances[i] = nearest.distance;
-    }
-    if (request.want_points) {
-      response.points_on_segment[i] = toPoint(context.frame.pointBack(nearest.on_segment));
-      response.points_on_box[i] = toPoint(context.frame.pointBack(nearest.on_box));
-    }
-    if (request.want_blocked_at) {
-      response.blocked_at[i] = blockage.blocked_at;
-    }
-    if (request.want_boxes) {
-      response.nearest_boxes[i] = indexOf(nearest.box);
-      response.blocking_boxes[i] = indexOf(blockage.box);
-    }
-    if (is_drawn) {
-      draw(segment,
-           blocked   ? Outcome::kMet
-           : trusted ? Outcome::kFree
-                     : Outcome::kUnknown,
-           nearest, blockage, context.drawing);
-    }
-    return blocked;
-  };
-  // Those that are drawn, and those that may be the last, one after the other.
+  // Those that may be the last one after the other.
   std::size_t answered = 0;
   bool ended = false;
-  while (answered < segments && !ended && (request.stop_at_blocked || !context.drawing.full())) {
-    ended = answerOne(answered++, true) && request.stop_at_blocked;
+  while (request.stop_at_blocked && answered < segments && !ended) {
+    checkRunning(context.stopping);
+    ended = batch.answerOne(answered++);
   }
-  if (!ended) {
-    const std::size_t first = answered;
-    forEachCountedPart(segments - first, context.batch_threads, context.totals,
-                       [&](std::size_t begin, std::size_t end) {
-                         for (std::size_t i = begin; i < end; ++i) {
-                           answerOne(first + i, false);
+  forEachCountedPart(ended ? 0 : segments - answered, context.batch_threads, context.totals,
+                     [&](std::size_t begin, std::size_t end) {
+                       for (std::size_t i = begin; i < end; ++i) {
+                         if ((i - begin) % kSegmentsAtOnce == 0) {
+                           checkRunning(context.stopping);
                          }
-                       });
-  }
+                         batch.answerOne(answered + i);
+                       }
+                     });
+  batch.draw();
+
   const auto blocked =
       std::find(response.states.begin(), response.states.end(), CheckSegmentsResponse::BLOCKED);
+  response.first_blocked = -1;
   if (blocked != response.states.end()) {
     response.first_blocked = static_cast<std::int32_t>(blocked - response.states.begin());
   }
-  response.all_clear = segments > 0 && trusted && response.first_blocked < 0;
+  response.all_clear = segments > 0 && batch.trusted() && response.first_blocked < 0;
   nameBoxes(context.snapshot, {&response.nearest_boxes, &response.blocking_boxes}, response);
 }
 

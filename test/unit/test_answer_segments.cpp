@@ -285,5 +285,34 @@ TEST(PointAt, KeepsTheEndsAndStaysBetweenThem) {
   }
 }
 
+TEST(CheckSegments, AreDrawnUpToALimitAsFarAsTheyWereEvaluated) {
+  const Snapshot snapshot = smallSnapshot();
+  CheckSegmentsRequest request;
+  request.header.frame_id = "map";
+  request.shape = CheckSegmentsRequest::PATH;
+  request.points = {point(0, 2, 0), point(0, 0, 0), point(3, 0, 0), point(3, 2, 0)};
+  request.want_blocked_at = request.want_points = true;
+  const auto drawn = [&](std::size_t limit) {
+    Context context = {snapshot, ros::Time(101), FrameChange(), Drawing(limit)};
+    CheckSegmentsResponse response;
+    answer(request, context, response);
+    return context.drawing.take();
+  };
+  const std::vector<DrawnQuery> all = drawn(9);
+  ASSERT_EQ(all.size(), 3U);
+  EXPECT_EQ(all[0].outcome, Outcome::kFree);
+  EXPECT_TRUE(std::isnan(all[0].hit.x()));
+  EXPECT_EQ(all[0].on_box.x(), 1.5);
+  EXPECT_EQ(all[1].outcome, Outcome::kMet);
+  EXPECT_EQ(all[1].start, Vector3(0, 0, 0));
+  EXPECT_EQ(all[1].end, Vector3(3, 0, 0));
+  EXPECT_EQ(all[1].hit, Vector3(1.5, 0, 0));
+  EXPECT_EQ(all[2].outcome, Outcome::kFree);
+  EXPECT_EQ(drawn(2).size(), 2U);
+  EXPECT_TRUE(drawn(0).empty());
+  request.stop_at_blocked = true;
+  EXPECT_EQ(drawn(9).size(), 2U);
+}
+
 }  // namespace
 }  // namespace box_query::test
