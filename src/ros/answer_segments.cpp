@@ -58,6 +58,12 @@ void draw(const Segment& segment, Outcome outcome, const Clearance& nearest,
   drawing.add(query);
 }
 
+/// Whether a clearance says that a segment is clear: rounding keeps the order, so what is rounded
+/// to more than the radius is more. What is rounded to the radius itself says nothing.
+bool isMoreThan(double radius, const Clearance& nearest) {
+  return nearest.distance > radius;
+}
+
 std::int32_t indexOf(std::size_t box) {
   return box == kNoBox ? -1 : static_cast<std::int32_t>(box);
 }
@@ -99,13 +105,16 @@ class SegmentBatch {
   /// @return whether segment `i` is blocked
   bool answerOne(std::size_t i) {
     const Segment segment = segmentOf(i);
+    bool clear = false;
     if (want_nearest_) {
-      set(i, nearestOf(segment));
+      const Clearance nearest = nearestOf(segment);
+      set(i, nearest);
+      clear = isMoreThan(radiusOf(i), nearest);
     }
     if (!want_blockage_) {
-      return setState(i, !scene_.isClear(segment, radiusOf(i), mask_));
+      return setState(i, !clear && !scene_.isClear(segment, radiusOf(i), mask_));
     }
-    const Blockage blockage = blockageOf(i, segment);
+    const Blockage blockage = clear ? Blockage() : blockageOf(i, segment);
     set(i, blockage);
     return setState(i, blockage.blocked);
   }
@@ -225,7 +234,9 @@ void answer(const CheckSegmentRequest& request, Context& context, CheckSegmentRe
   const BoxMask* const looked_at = mask ? &*mask : nullptr;
   const Segment segment = segmentIn(context, request.start, request.end, {"start"});
   const Clearance nearest = snapshot.scene.clearance(segment, looked_at);
-  const Blockage blockage = snapshot.scene.firstBlockage(segment, request.radius, looked_at);
+  const Blockage blockage = isMoreThan(request.radius, nearest)
+                                ? Blockage()
+                                : snapshot.scene.firstBlockage(segment, request.radius, looked_at);
   response.blocked = blockage.blocked;
   response.clear = !blockage.blocked && (response.complete || request.allow_incomplete);
   response.clearance = nearest.distance;

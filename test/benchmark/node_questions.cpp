@@ -189,18 +189,25 @@ std::vector<BatchQuestion<CheckSegments>> segmentQuestions(const Scene& scene,
   clearances.want_clearances = true;
   CheckSegmentsRequest everything = clearances;
   everything.want_points = everything.want_blocked_at = everything.want_boxes = true;
+  // A clearance above the radius says that nothing blocks: the library is not asked again.
+  std::vector<Segment> near;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (!(right->nearest[i].distance > kRadius)) {
+      near.push_back(segments[i]);
+    }
+  }
   return {question("states", states,
                    [&scene, segments, options] {
                      keep(isClearEach(scene, segments, kRadius, options));
                    }),
           question("clearances", clearances,
-                   [&scene, segments, options] {
-                     keep(isClearEach(scene, segments, kRadius, options));
+                   [&scene, segments, near, options] {
                      keep(clearanceEach(scene, segments, options));
+                     keep(isClearEach(scene, near, kRadius, options));
                    }),
-          question("everything", everything, [&scene, segments, options] {
+          question("everything", everything, [&scene, segments, near, options] {
             keep(clearanceEach(scene, segments, options));
-            keep(firstBlockageEach(scene, segments, kRadius, options));
+            keep(firstBlockageEach(scene, near, kRadius, options));
           })};
 }
 

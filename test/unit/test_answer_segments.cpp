@@ -180,6 +180,30 @@ TEST(CheckSegments, StatesDoNotDependOnWhatIsWanted) {
   EXPECT_EQ(ask(request, snapshot).states, bare.states);
 }
 
+TEST(CheckSegments, AreDecidedExactlyWhereTheRadiusIsTheRoundedClearance) {
+  const Snapshot snapshot = randomSnapshot(12, 3);
+  CheckSegmentsRequest request = randomPath(301, 4);
+  request.want_clearances = true;
+  request.radii = ask(request, snapshot).clearances;
+  const CheckSegmentsResponse decided = ask(request, snapshot);
+  EXPECT_GT(std::count(decided.states.begin(), decided.states.end(), kBlocked), 60);
+  EXPECT_GT(std::count(decided.states.begin(), decided.states.end(), kClear), 60);
+  for (std::size_t i = 0; i < 300; ++i) {
+    const Segment asked = {fromMessage(request.points[i]), fromMessage(request.points[i + 1])};
+    EXPECT_EQ(decided.states[i] == kClear, snapshot.scene.isClear(asked, request.radii[i])) << i;
+    EXPECT_EQ(
+        ask(segment(request.points[i], request.points[i + 1], request.radii[i]), snapshot).clear,
+        decided.states[i] == kClear)
+        << i;
+  }
+  request.want_blocked_at = request.want_boxes = true;
+  const CheckSegmentsResponse with_places = ask(request, snapshot);
+  EXPECT_EQ(with_places.states, decided.states);
+  for (std::size_t i = 0; i < 300; ++i) {
+    EXPECT_EQ(with_places.blocked_at[i] == kInf, decided.states[i] == kClear) << i;
+  }
+}
+
 TEST(CheckSegments, StopAtTheLowestIndexThatIsBlocked) {
   CheckSegmentsRequest request;
   request.shape = CheckSegmentsRequest::PATH;
