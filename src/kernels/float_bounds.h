@@ -26,6 +26,8 @@ constexpr double kFloatUnderflow = 0x1p-100;
 
 /// Segments: distances, relative to themselves and to |o|_1 + |d|_1: 24u. See generic/nearest.h.
 constexpr double kLoss = 0x1p-19;
+/// Estimates of a quotient by a root, relative.
+constexpr double kRoughRoot = 0x1p-11;
 /// More than a distance whose square a float cannot hold.
 constexpr double kShortest = 0x1p-60;
 

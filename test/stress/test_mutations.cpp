@@ -163,8 +163,13 @@ TEST(Mutations, PlanesThatAreNotMovedApartForFlatRaysAreNoticed) {
 }
 
 TEST(Mutations, ShrunkBoundsOfDistancesInFloatAreNoticed) {
-  const Spoilt<double> spoilt(float_bounds::kLoss, float_bounds::kLoss / 64);
-  EXPECT_GT(wrongScenes("scene_shelves", 800), 0U);
+  const Spoilt<double> spoilt(float_bounds::kLoss, 0.0);
+  EXPECT_GT(wrongScenes("scene_near_ties", 400), 0U);
+}
+
+TEST(Mutations, EstimatesOfRootsThatAreTakenForRootsAreNoticed) {
+  const Spoilt<double> spoilt(float_bounds::kRoughRoot, 0.0);
+  EXPECT_GT(wrongScenes("scene_near_ties", 400), 0U);
 }
 
 }  // namespace

@@ -48,6 +48,10 @@ static inline Float16 roughQuotient(Float16 a, Float16 b) {
 static inline Float16 overRoot(Float16 a, Float16 b) {
   return {overRoot(Float8{a.lo}, Float8{b.lo}).v, overRoot(Float8{a.hi}, Float8{b.hi}).v};
 }
+/// a / sqrt(b), off by less than 2^-11 of it.
+static inline Float16 roughOverRoot(Float16 a, Float16 b) {
+  return {_mm256_mul_ps(a.lo, _mm256_rsqrt_ps(b.lo)), _mm256_mul_ps(a.hi, _mm256_rsqrt_ps(b.hi))};
+}
 /// a where b is not 0.
 static inline Float16 orZeroWhereZero(Float16 a, Float16 b) {
   const __m256 zero = _mm256_setzero_ps();

@@ -53,6 +53,10 @@ static inline Float16 overRoot(Float16 a, Float16 b) {
   const __m512 factor = _mm512_fnmadd_ps(_mm512_mul_ps(half_b, r), r, _mm512_set1_ps(1.5F));
   return {_mm512_mul_ps(_mm512_mul_ps(a.v, r), factor)};
 }
+/// a / sqrt(b), off by less than 2^-13 of it.
+static inline Float16 roughOverRoot(Float16 a, Float16 b) {
+  return {_mm512_mul_ps(a.v, _mm512_maskz_rsqrt14_ps(kAllLanes, b.v))};
+}
 /// a where b is not 0.
 static inline Float16 orZeroWhereZero(Float16 a, Float16 b) {
   return {_mm512_maskz_mov_ps(_mm512_cmp_ps_mask(b.v, _mm512_setzero_ps(), _CMP_NEQ_OQ), a.v)};

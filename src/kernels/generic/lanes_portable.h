@@ -256,6 +256,10 @@ static inline Float16 overRoot(const Float16& a, const Float16& b) {
     return a.v[i] * r;
   });
 }
+/// a / sqrt(b); an estimate would do.
+static inline Float16 roughOverRoot(const Float16& a, const Float16& b) {
+  return overRoot(a, b);
+}
 /// a where b is not 0.
 static inline Float16 orZeroWhereZero(const Float16& a, const Float16& b) {
   return each<kSlots>([&](int i) { return floatOf((b.v[i] != 0.0F) & bitsOf(a.v[i])); });
