@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The walk: box message -> source -> store -> placement (BoxTracker) -> new Scene -> one pointer
-// swapped. Here are the threads: one hears boxes, one hears tf, and a worker places what waited and
-// builds ahead. Whoever asks builds too, if the worker has not yet.
+// swapped (SceneBuilder). Here are the threads: one hears boxes, one hears tf, a worker places what
+// waited and builds ahead, and a watcher asks the master, which may take its time, who publishes.
 #include "ros/bell.h"
 #include "ros/box_topics.h"
 #include "ros/box_tracker.h"
-#include "ros/built.h"
 #include "ros/history.h"
-#include "ros/kept_scenes.h"
-#include "ros/latest.h"
-#include "ros/name_order.h"
 #include "ros/publishers.h"
+#include "ros/scene_builder.h"
 #include "ros/succession.h"
 #include "ros/transforms.h"
 
@@ -42,6 +39,10 @@ constexpr std::chrono::seconds kPublisherCheck(1);
 /// [ns] The system clock may be set back by this much; boxes then live that much longer.
 constexpr std::int64_t kClockStep = 1000000000;
 
+std::int64_t nanoseconds(const ros::Time& time) {
+  return static_cast<std::int64_t>(time.toNSec());
+}
+
 /// The parameters with names as the rest of the program compares them.
 Parameters resolved(const ros::NodeHandle& nh, Parameters parameters) {
   parameters.fixed_frame = std::string(stripSlash(parameters.fixed_frame));
@@ -64,38 +65,31 @@ struct SceneMonitor::Impl {
   void checkPublishers();
   void forgetFormerPublishers();
   void receive(std::size_t topic, AnyBoxMessage& message);
+  bool isBack(const ros::Time& time) const;
   void noticeTime();
+  void followClocks();
 
   void makeNewest();
-  void build();
-  SnapshotPtr handOut() const;
+  void awaitNewest();
 
   void work();
   void tick();
-  bool queriedLately();
+  void watchPublishers();
 
   const ros::NodeHandle nh;
   const Parameters parameters;
-  Bell bell;                           ///< for the worker
+  Bell bell;                           ///< for the worker and the watcher
   std::atomic<bool> tf_wanted{false};  ///< transforms ring the bell
   Transforms transforms;
 
-  std::mutex mutex;  ///< guards the next seven
+  std::timed_mutex mutex;  ///< guards the next four
   BoxTracker tracker;
   std::vector<Succession> successions;  ///< of the publishers of each topic
   ros::Time now;                        ///< when last looked at
-  std::uint64_t builds = 0;
-  std::uint64_t refits = 0;
-  std::uint64_t unbuilt_changes = 0;
   History history;
 
-  std::mutex build_mutex;           ///< one at a time; locked before `mutex`
-  Latest<BuiltPtr> latest;          ///< never null; written with build_mutex locked
-  std::uint64_t shown_changes = 0;  ///< of the tracker, that the snapshot shows; with both locked
-  std::uint64_t shown_boxes = 0;
-  mutable std::atomic<bool> queried{false};  ///< since the worker looked
-  Clock::time_point last_query;              ///< as the worker saw it; its epoch: none yet
-  KeptScenes kept;
+  std::atomic<std::int64_t> noticed;  ///< `now` for who does not lock [ns]
+  SceneBuilder builder;
 
   std::mutex changed_mutex;  ///< held while `changed` runs
   std::function<void()> changed;
@@ -104,6 +98,7 @@ struct SceneMonitor::Impl {
   std::atomic<bool> stopping{false};
   BoxTopics topics;
   std::thread worker;
+  std::thread watcher;
 };
 
 SceneMonitor::Impl::Impl(const ros::NodeHandle& node, const Parameters& given)
@@ -119,12 +114,13 @@ SceneMonitor::Impl::Impl(const ros::NodeHandle& node, const Parameters& given)
       successions(parameters.box_topics.size(), Succession(ros::this_node::getName())),
       now(ros::Time::now()),
       history(parameters),
-      latest(firstOf(tracker)),
-      kept(parameters),
+      noticed(nanoseconds(now)),
+      builder(parameters, tracker, mutex),
       topics(node, parameters,
              [this](std::size_t topic, AnyBoxMessage& message) { receive(topic, message); }) {
   topics.start();
   worker = std::thread([this] { work(); });
+  watcher = std::thread([this] { watchPublishers(); });
 }
 
 /// Ends the threads: only then may anything that they use be destroyed.
@@ -132,13 +128,14 @@ void SceneMonitor::Impl::stop() {
   stopping = true;
   bell.ring();
   worker.join();
+  watcher.join();
   topics.stop();
 }
 
 void SceneMonitor::Impl::checkPublishers() {
   topics.checkPublishers(
       [this](std::size_t topic, std::size_t publishers, const std::string& type) {
-        std::unique_lock<std::mutex> lock(mutex);
+        std::unique_lock<std::timed_mutex> lock(mutex);
         const std::string warning = tracker.setUnheard(topic, publishers, type);
         lock.unlock();
         ROS_WARN_STREAM_COND(!warning.empty(), "box_query: " << warning);
@@ -147,7 +144,7 @@ void SceneMonitor::Impl::checkPublishers() {
 
 /// What the publishers of a topic said before they made way for new ones is forgotten.
 void SceneMonitor::Impl::forgetFormerPublishers() {
-  std::unique_lock<std::mutex> lock(mutex);
+  std::unique_lock<std::timed_mutex> lock(mutex);
   for (std::size_t topic = 0; topic < successions.size(); ++topic) {
     if (successions[topic].asks(Clock::now())) {
       lock.unlock();
@@ -159,6 +156,7 @@ void SceneMonitor::Impl::forgetFormerPublishers() {
       }
       if (const auto last_word = successions[topic].look(std::move(*known))) {
         tracker.forgetBefore(topic, *last_word);
+        bell.ring();
       }
     }
   }
@@ -168,7 +166,8 @@ void SceneMonitor::Impl::receive(std::size_t topic, AnyBoxMessage& message) {
   const std::string problem = message.decoded.problem;
   const BoxSource* former = nullptr;
   {
-    const std::lock_guard<std::mutex> lock(mutex);
+    const std::lock_guard<std::timed_mutex> lock(mutex);
+    builder.noteChange();
     noticeTime();
     former = tracker.lastSource(topic);
     successions[topic].hear(message.connection, tracker.lastWord(), Clock::now());
@@ -187,12 +186,16 @@ void SceneMonitor::Impl::receive(std::size_t topic, AnyBoxMessage& message) {
   }
 }
 
-/// Reads the ROS clock. A clock that was set back (a bag that starts again) makes everything known
-/// so far a thing of the future; tf2 itself would go on answering from it until its next message.
+/// The ROS clock was set back (a bag that starts again).
+bool SceneMonitor::Impl::isBack(const ros::Time& time) const {
+  return noticed - nanoseconds(time) > (ros::Time::isSimTime() ? 0 : kClockStep);
+}
+
+/// Reads the ROS clock. One that was set back makes everything known so far a thing of the future;
+/// tf2 itself would go on answering from it until its next message.
 void SceneMonitor::Impl::noticeTime() {
   const ros::Time time = ros::Time::now();
-  const std::int64_t back = static_cast<std::int64_t>(now.toNSec() - time.toNSec());
-  if (back > (ros::Time::isSimTime() ? 0 : kClockStep)) {
+  if (isBack(time)) {
     ROS_WARN_STREAM("box_query: time went back from " << now << " to " << time
                                                       << "; boxes and transforms are forgotten");
     transforms.clear();
@@ -203,80 +206,58 @@ void SceneMonitor::Impl::noticeTime() {
     tracker.startClock(time);
   }
   now = time;
+  noticed = nanoseconds(time);
+  history.follow(tracker, now);
+}
+
+/// Looks at what changes by itself.
+void SceneMonitor::Impl::followClocks() {
+  noticeTime();
+  tracker.expire(now);
+  tracker.followLockedFrames();
   history.follow(tracker, now);
 }
 
 /// Makes the latest snapshot one of all that is known now, unless it is, or somebody else does.
 void SceneMonitor::Impl::makeNewest() {
   {
-    const std::lock_guard<std::mutex> lock(mutex);
-    noticeTime();
-    tracker.expire(now);
-    tracker.followLockedFrames();
-    history.follow(tracker, now);
-    if (tracker.changes() == shown_changes) {
+    const std::lock_guard<std::timed_mutex> lock(mutex);
+    followClocks();
+    if (!builder.isBehind()) {
       return;
     }
   }
-  build();
+  builder.build();
 }
 
-void SceneMonitor::Impl::build() {
-  const std::lock_guard<std::mutex> building(build_mutex);
-  std::unique_lock<std::mutex> lock(mutex);
+/// The same, but where the worker builds ahead it is left to it: neither for a message that is
+/// being taken in nor for a scene that is being built does this wait longer than their grace.
+void SceneMonitor::Impl::awaitNewest() {
+  if (!builder.isAhead()) {
+    makeNewest();
+    return;
+  }
+  // By the system's clock, since ThreadSanitizer misses locks by the steady one.
+  std::unique_lock<std::timed_mutex> lock(
+      mutex, std::chrono::system_clock::now() + (builder.graceEnd() - Clock::now()));
+  if (!lock) {
+    return;
+  }
+  followClocks();
+  if (!builder.isBehind()) {
+    return;
+  }
+  builder.noteChange();
   const std::uint64_t changes = tracker.changes();
-  const std::uint64_t boxes = tracker.boxesVersion();
-  if (changes == shown_changes) {
-    return;  // somebody else was faster
-  }
-  Draft draft = tracker.draft();
-  unbuilt_changes += changes - shown_changes;
   lock.unlock();
-
-  const BuiltPtr before = latest.read([](const BuiltPtr& built) { return built; });
-  const bool same = boxes == shown_boxes;
-  const Snapshot& old = before->snapshot;
-  draft.snapshot.scene =
-      same ? old.scene
-           : old.scene.updated(std::move(draft.boxes), placesOf(draft.snapshot.names, old.names));
-  const auto after = std::make_shared<Built>(std::move(draft.snapshot));
-  latest.write(after);
-  if (before->handed_out) {  // nobody can get it any more
-    kept.add(snapshotOf(before), after->snapshot.names.size());
-  }
-
-  lock.lock();
-  if (!same) {
-    ++builds;
-    refits += after->snapshot.scene.update().rebuilt ? 0 : 1;
-    --unbuilt_changes;
-  }
-  shown_changes = changes;
-  shown_boxes = boxes;
-}
-
-SnapshotPtr SceneMonitor::Impl::handOut() const {
-  if (!queried.load(std::memory_order_relaxed)) {
-    queried = true;
-  }
-  return latest.read([](const BuiltPtr& built) {
-    if (!built->handed_out.load(std::memory_order_relaxed)) {
-      built->handed_out = true;
-    }
-    return snapshotOf(built);
-  });
+  bell.ring();
+  builder.await(changes);
 }
 
 void SceneMonitor::Impl::work() {
-  Clock::time_point publisher_check = Clock::now();
   while (!stopping) {
     const std::uint64_t rings = bell.rings();
-    forgetFormerPublishers();
     tick();
-    if (Clock::now() >= publisher_check) {
-      checkPublishers();
-      publisher_check = Clock::now() + kPublisherCheck;
-    }
     bell.waitPast(rings, Clock::now() + kTick);
   }
 }
@@ -284,18 +265,14 @@ void SceneMonitor::Impl::work() {
 void SceneMonitor::Impl::tick() {
   std::uint64_t boxes = 0;
   {
-    const std::lock_guard<std::mutex> lock(mutex);
-    noticeTime();
-    tracker.expire(now);
+    const std::lock_guard<std::timed_mutex> lock(mutex);
+    followClocks();
     tracker.settle(Clock::now());
-    tracker.followLockedFrames();
     history.follow(tracker, now);
     tf_wanted = tracker.isWaiting();
     boxes = tracker.boxesVersion();
   }
-  if (queriedLately()) {
-    build();
-  }
+  builder.buildAhead();
   if (boxes != announced_boxes) {
     announced_boxes = boxes;
     const std::lock_guard<std::mutex> lock(changed_mutex);
@@ -305,12 +282,17 @@ void SceneMonitor::Impl::tick() {
   }
 }
 
-bool SceneMonitor::Impl::queriedLately() {
-  if (queried.exchange(false)) {
-    last_query = Clock::now();
+void SceneMonitor::Impl::watchPublishers() {
+  Clock::time_point publisher_check = Clock::now();
+  while (!stopping) {
+    const std::uint64_t rings = bell.rings();
+    forgetFormerPublishers();
+    if (Clock::now() >= publisher_check) {
+      checkPublishers();
+      publisher_check = Clock::now() + kPublisherCheck;
+    }
+    bell.waitPast(rings, Clock::now() + kTick);
   }
-  return last_query != Clock::time_point() &&
-         std::chrono::duration<double>(Clock::now() - last_query).count() < parameters.build_ahead;
 }
 
 SceneMonitor::SceneMonitor(const ros::NodeHandle& nh, const Parameters& parameters)
@@ -321,21 +303,26 @@ SceneMonitor::~SceneMonitor() {
 }
 
 SnapshotPtr SceneMonitor::scene() const {
-  return impl_->handOut();
+  return impl_->builder.handOut();
 }
 
 SnapshotPtr SceneMonitor::currentScene() {
   impl_->makeNewest();
-  return impl_->handOut();
+  return impl_->builder.handOut();
+}
+
+SnapshotPtr SceneMonitor::promptScene() {
+  impl_->awaitNewest();
+  return impl_->builder.handOut();
 }
 
 SnapshotPtr SceneMonitor::watchedScene() {
   impl_->makeNewest();
-  return impl_->latest.read(snapshotOf);
+  return impl_->builder.latest();
 }
 
 std::string SceneMonitor::sceneAt(const ros::Time& time, SnapshotPtr& scene) {
-  std::unique_lock<std::mutex> lock(impl_->mutex);
+  std::unique_lock<std::timed_mutex> lock(impl_->mutex);
   impl_->noticeTime();
   const std::string missing = impl_->history.missingAt(time, impl_->now);
   if (!missing.empty()) {
@@ -343,21 +330,12 @@ std::string SceneMonitor::sceneAt(const ros::Time& time, SnapshotPtr& scene) {
   }
   const auto past = impl_->history.at(time);
   lock.unlock();
-  scene = impl_->latest.read([&past](const BuiltPtr& built) {
-    if (built->snapshot.id == past->id()) {
-      built->handed_out = true;
-    }
-    return snapshotOf(built);
-  });
-  if (scene->id != past->id()) {
-    scene = impl_->kept.restore(*past, scene->names.size());
-  }
+  scene = impl_->builder.restore(*past);
   return "";
 }
 
 SnapshotPtr SceneMonitor::sceneById(std::uint64_t id) const {
-  const SnapshotPtr latest = impl_->latest.read(snapshotOf);
-  return latest->id == id ? latest : impl_->kept.find(id);
+  return impl_->builder.find(id);
 }
 
 std::string SceneMonitor::resolveTopic(const std::string& topic) const {
@@ -368,8 +346,8 @@ std::string SceneMonitor::resolveTopic(const std::string& topic) const {
 std::string SceneMonitor::lookUpTransform(const std::string& target, const std::string& source,
                                           const ros::Time& stamp, double timeout,
                                           geometry_msgs::TransformStamped& transform) const {
-  {
-    const std::lock_guard<std::mutex> lock(impl_->mutex);
+  if (impl_->isBack(ros::Time::now())) {  // else a message that is being taken in need not end
+    const std::lock_guard<std::timed_mutex> lock(impl_->mutex);
     impl_->noticeTime();
   }
   return impl_->transforms.lookUp(target, source, stamp, timeout, transform);
@@ -381,11 +359,9 @@ void SceneMonitor::setChangedCallback(std::function<void()> changed) {
 }
 
 MonitorStatistics SceneMonitor::statistics() const {
-  const std::lock_guard<std::mutex> lock(impl_->mutex);
+  const std::lock_guard<std::timed_mutex> lock(impl_->mutex);
   MonitorStatistics counts = impl_->tracker.counts();
-  counts.builds = impl_->builds;
-  counts.refits = impl_->refits;
-  counts.avoided_builds = impl_->unbuilt_changes;
+  impl_->builder.addCounts(counts);
   return counts;
 }
 

@@ -69,7 +69,7 @@ Server::~Server() {
 
 SnapshotPtr Server::sceneAt(const ros::Time& scene_time) {
   if (scene_time.isZero()) {
-    return monitor_.currentScene();
+    return monitor_.promptScene();
   }
   SnapshotPtr scene;
   const std::string missing = monitor_.sceneAt(scene_time, scene);

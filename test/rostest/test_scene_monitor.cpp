@@ -242,6 +242,41 @@ TEST_F(MonitorOfOneTopic, TellsOfChangesAndOfNothingElse) {
   EXPECT_EQ(calls, 2);
 }
 
+TEST_F(MonitorOfOneTopic, PromptSceneDoesNotWaitForTheWorker) {
+  start();
+  std::atomic<bool> released{false};
+  std::atomic<bool> held{false};
+  monitor_->setChangedCallback([&] {
+    held = true;
+    while (!released) {
+      std::this_thread::yield();
+    }
+  });
+  monitor_->scene();  // from now on scenes are built ahead
+  say({cube("map", 1, 1.0)});
+  ASSERT_TRUE(eventually([&] { return held.load(); }));
+  say({cube("map", 2, 2.0)});
+  ASSERT_TRUE(eventually([&] { return monitor_->statistics().boxes == 2U; }));
+  EXPECT_EQ(contents(*monitor_->promptScene()), "1:1 ") << "nobody has built the second one";
+  EXPECT_EQ(contents(*monitor_->currentScene()), "1:1 2:2 ");
+  EXPECT_EQ(contents(*monitor_->promptScene()), "1:1 2:2 ");
+  released = true;
+  monitor_->setChangedCallback(nullptr);
+  say({cube("map", 3, 3.0)});
+  EXPECT_TRUE(eventually([&] { return contents(*monitor_->promptScene()) == "1:1 2:2 3:3 "; }));
+}
+
+TEST_F(MonitorOfOneTopic, PromptSceneIsTheNewestAfterASilence) {
+  parameters_.build_ahead = 0.0;
+  start();
+  for (int id = 1; id <= 3; ++id) {
+    say({cube("map", id, 1.0)});
+    ASSERT_TRUE(eventually(
+        [&] { return monitor_->statistics().messages == static_cast<std::uint64_t>(id); }));
+    EXPECT_EQ(monitor_->promptScene()->scene.size(), static_cast<std::size_t>(id));
+  }
+}
+
 TEST_F(MonitorOfOneTopic, ShowsEveryMessageWholeOrNotAtAll) {
   start();
   std::atomic<bool> stop{false};

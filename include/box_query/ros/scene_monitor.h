@@ -134,6 +134,11 @@ class SceneMonitor {
   /// be.
   SnapshotPtr currentScene();
 
+  /// The same for who must not wait for boxes, such as a service: while scenes are built ahead, a
+  /// message that takes longer than 10 ms to take in and to build is not waited for, and the
+  /// snapshot is one of before. After a longer silence it is currentScene().
+  SnapshotPtr promptScene();
+
   /// The same as currentScene() for who only watches: no reason to build ahead, and not to be asked
   /// for by its id.
   SnapshotPtr watchedScene();
@@ -161,8 +166,8 @@ class SceneMonitor {
                               geometry_msgs::TransformStamped& transform) const;
 
   /// Calls `changed` from a thread of the monitor after the boxes have changed, at most once a
-  /// change; it may call any other function of the monitor. Returns when a running call of the one
-  /// before has ended, so that null takes leave safely.
+  /// change; it may call any other function of the monitor. Nothing is built ahead until it returns.
+  /// Returns when a running call of the one before has ended, so that null takes leave safely.
   void setChangedCallback(std::function<void()> changed);
 
   MonitorStatistics statistics() const;
