@@ -99,7 +99,7 @@ TEST(LoadChecks, SeeAnAnswerFromAnotherScene) {
     }
   }
   const Verdict verdict = checkAgain(someAnswers(), scenes);
-  EXPECT_GT(verdict.wrong.size(), 50U) << "but for those that meet nothing in either";
+  EXPECT_GT(verdict.wrong.size(), 10U) << "many meet nothing in either";
   EXPECT_EQ(checkAgain(someAnswers(), {}).unknown_scenes, 100U);
 }
 
