@@ -30,16 +30,10 @@ bool same(const IdentifiedBoxes& a, const IdentifiedBoxes& b) {
 BoxStore::BoxStore(std::size_t topics) : topics_(topics) {}
 
 Word BoxStore::hear(std::size_t topic_index, BoxChange&& change, const ros::Time& now) {
-  Word word;
-  word.topic = topic_index;
-  word.number = ++last_word_;
-  word.received = now;
-  word.expiry = change.lifetime > 0 ? nanoseconds(now) + change.lifetime : kForever;
-  word.change = std::move(change);
-
+  const std::int64_t expiry = change.lifetime > 0 ? nanoseconds(now) + change.lifetime : kForever;
+  Word word{topic_index, ++last_word_, now, expiry, std::move(change)};
   Topic& topic = topics_.at(topic_index);
-  Item& item = topic.items[word.change.ns][word.change.id];
-  last_item_ = &item;
+  Item& item = itemAt(topic_index, word.change.ns, word.change.id);
   if (item.first_word == 0) {
     item.first_word = word.number;
   }
@@ -106,7 +100,7 @@ void BoxStore::remove(std::size_t topic_index, const std::string& ns, std::int64
     return;
   }
   forget(topic, item->second);
-  last_item_ = nullptr;
+  last_place_.reset();
   items->second.erase(item);
   if (items->second.empty()) {
     topic.items.erase(items);
@@ -125,7 +119,7 @@ std::size_t BoxStore::clear(std::size_t topic_index) {
     ++boxes_revision_;
   }
   topic = Topic();
-  last_item_ = nullptr;
+  last_place_.reset();
   return boxes;
 }
 
@@ -148,7 +142,7 @@ std::size_t BoxStore::forgetBefore(std::size_t topic_index, const std::string& n
 /// Moves on to the next namespace.
 std::size_t BoxStore::forgetBefore(Topic& topic, Items::iterator& items, std::uint64_t word) {
   std::size_t boxes = 0;
-  last_item_ = nullptr;
+  last_place_.reset();
   for (auto next = items->second.begin(); next != items->second.end();) {
     if (next->second.latest_word <= word) {
       boxes += boxesOf(next->second);
@@ -175,7 +169,7 @@ std::size_t BoxStore::expire(const ros::Time& now) {
   }
   std::size_t expired = 0;
   next_expiry_ = kForever;
-  last_item_ = nullptr;
+  last_place_.reset();
   for (Topic& topic : topics_) {
     for (auto items = topic.items.begin(); items != topic.items.end();) {
       for (auto next = items->second.begin(); next != items->second.end();) {
@@ -203,7 +197,7 @@ std::size_t BoxStore::expire(const ros::Time& now) {
 
 void BoxStore::keepLatest(std::size_t topic_index, const std::function<bool(const Item&)>& keep) {
   Topic& topic = topics_.at(topic_index);
-  last_item_ = nullptr;
+  last_place_.reset();
   for (auto items = topic.items.begin(); items != topic.items.end();) {
     for (auto next = items->second.begin(); next != items->second.end();) {
       Item& item = next->second;
@@ -236,6 +230,18 @@ void BoxStore::moveClock(std::int64_t later) {
   }
 }
 
+Item& BoxStore::itemAt(std::size_t topic, const std::string& ns, std::int64_t id) {
+  Items& items = topics_.at(topic).items;
+  if (!last_place_ || last_place_->items != &items || last_place_->ns->first != ns) {
+    const auto ids = items.try_emplace(ns).first;
+    last_place_ = Place{&items, ids, ids->second.end()};
+  }
+  Ids& ids = last_place_->ns->second;
+  const auto behind = last_place_->id == ids.end() ? ids.end() : std::next(last_place_->id);
+  last_place_->id = ids.try_emplace(behind, id);
+  return last_place_->id->second;
+}
+
 const Item* BoxStore::find(const Word& word) const {
   const Items& all = topics_.at(word.topic).items;
   const auto items = all.find(word.change.ns);
@@ -247,8 +253,8 @@ const Item* BoxStore::find(const Word& word) const {
 }
 
 Item& BoxStore::itemOf(const Word& word) {
-  return last_item_ && word.number == last_word_
-             ? *last_item_
+  return last_place_ && word.number == last_word_
+             ? last_place_->id->second
              : topics_.at(word.topic).items[word.change.ns][word.change.id];
 }
 

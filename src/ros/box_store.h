@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,7 +62,8 @@ struct Item {
 /// another. Not thread safe.
 class BoxStore {
  public:
-  using Items = std::map<std::string, std::map<std::int64_t, Item>>;  // ns, id
+  using Ids = std::map<std::int64_t, Item>;
+  using Items = std::map<std::string, Ids>;  // by ns
 
   explicit BoxStore(std::size_t topics);
 
@@ -120,6 +122,8 @@ class BoxStore {
     std::size_t rejected = 0;
   };
 
+  /// Made if it is not there.
+  Item& itemAt(std::size_t topic, const std::string& ns, std::int64_t id);
   const Item* find(const Word& word) const;
   Item& itemOf(const Word& word);
   static void setMissing(Topic& topic, Item& item, std::size_t waiting, std::size_t rejected);
@@ -128,8 +132,13 @@ class BoxStore {
 
   std::vector<Topic> topics_;
   std::uint64_t last_word_ = 0;
-  // Most words are placed as soon as they are heard.
-  Item* last_item_ = nullptr;  ///< of that word; null if it may be gone
+  /// Most words are placed as soon as they are heard, and are about the item behind the last.
+  struct Place {
+    Items* items;
+    Items::iterator ns;
+    Ids::iterator id;
+  };
+  std::optional<Place> last_place_;  ///< of that word; nothing if its item may be gone
   std::int64_t next_expiry_ = kForever;
   std::uint64_t boxes_revision_ = 0;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/box_store.h"
 
+#include <map>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -52,6 +54,38 @@ TEST(BoxStore, OrdersByNamespaceAndIdWhateverCameFirst) {
   say(store, boxAt(3, -9, "b"));
   say(store, boxAt(4, 5, "a"));
   EXPECT_EQ(contents(store), "a/5:4 b/-9:3 b/3:2 b/7:1 ");
+}
+
+TEST(BoxStore, FindsItemsInWhateverOrderTheyAreNamed) {
+  BoxStore store(2);
+  std::map<std::string, std::map<std::int64_t, int>> right[2];
+  std::mt19937 random(3);
+  std::int64_t id = 0;
+  for (int x = 0; x < 5000; ++x) {
+    const std::size_t topic = random() % 8 == 0 ? 1 : 0;
+    const std::string ns = random() % 8 == 0 ? "b" : "a";
+    id = random() % 4 == 0 ? static_cast<std::int64_t>(random() % 50) : id + 1;  // often the next
+    if (random() % 5 == 0) {
+      store.remove(topic, ns, id);
+      right[topic][ns].erase(id);
+    } else if (random() % 500 == 0) {
+      store.clear(topic);
+      right[topic].clear();
+    } else {
+      say(store, boxAt(x, id, ns), topic);
+      right[topic][ns][id] = x;
+    }
+  }
+  for (const std::size_t topic : {0, 1}) {
+    std::string text;
+    for (const auto& [ns, items] : right[topic]) {
+      for (const auto& [item, x] : items) {
+        text += ns + "/" + std::to_string(item) + ":" + std::to_string(x) + " ";
+      }
+    }
+    EXPECT_FALSE(text.empty());
+    EXPECT_EQ(contents(store, topic), text);
+  }
 }
 
 TEST(BoxStore, ReplacesRemovesAndClears) {
