@@ -12,8 +12,11 @@
 namespace box_query {
 namespace {
 
-/// Boxes that are sooner compared themselves than by their bounds: at most 64.
+/// Boxes that are sooner compared themselves than by their bounds.
 constexpr std::size_t kInBlocks = 16;
+/// Where a ray through all of the scene meets more than one of the bounds.
+constexpr std::size_t kCrowdedInBlocks = 32;
+static_assert(kCrowdedInBlocks <= 64, "a bit each");
 
 /// The median of a sample, so that a few boxes far away do not cost the others the precision of
 /// float.
@@ -70,7 +73,7 @@ BoxTree::BoxTree(const std::vector<PreparedBox>& boxes) {
   built_records_ = records_.size();
   measure();
   built_cost_ = cost_;
-  if (records_.size() <= kInBlocks) {
+  if (records_.size() <= (is_crowded_ ? kCrowdedInBlocks : kInBlocks)) {
     blocks_ = blocksOf(records_, center_);
   }
   if (levels_.size() == 1) {
@@ -101,7 +104,9 @@ void BoxTree::measure() {
     longest = std::max(longest, side);
   }
   // A ray meets a convex body of surface S as often as a disc of S / 4 (Cauchy).
-  mean_free_path_ = std::min(std::max(4.0 * volume / area, longest / 64.0), 2.0 * longest);
+  const double free = 4.0 * volume / area;
+  mean_free_path_ = std::min(std::max(free, longest / 64.0), 2.0 * longest);
+  is_crowded_ = free < longest;
 
   cost_ = 0.0;
   for (std::size_t level = 1; level < levels_.size(); ++level) {
