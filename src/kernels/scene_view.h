@@ -35,14 +35,12 @@ struct alignas(64) BoxRecord {
   bool isAligned() const { return extent[3] < 0.0; }
 };
 
-constexpr int kBlockSlots = 8;
-
-/// Eight boxes of a short list in float, relative to the center of the scene, all as oriented ones.
-/// An empty slot has extents of -inf.
-struct alignas(32) BoxBlock {
-  float axis[3][3][kBlockSlots];  ///< [axis of the box][coordinate][slot]
-  float center[3][kBlockSlots];
-  float extent[3][kBlockSlots];  ///< half extents, padded: see generic/blocks.h
+/// Sixteen boxes of a short list in float, relative to the center of the scene, all as oriented
+/// ones. An empty slot has extents of -inf.
+struct alignas(64) BoxBlock {
+  float axis[3][3][kSlots];  ///< [axis of the box][coordinate][slot]
+  float center[3][kSlots];
+  float extent[3][kSlots];  ///< half extents, padded: see generic/blocks.h
 };
 
 /// Of what is compared with a block, origin and center and half extents: at most this far away.
@@ -62,10 +60,10 @@ struct SceneView {
   /// Level 0 is the lowest. All nodes of the last one are roots.
   Level levels[kMaxLevels];
   int depth;  ///< how many levels there are; 0: no box is in the tree
-  /// Of a list that is so short that its boxes are compared at once: slot i % kBlockSlots of block
-  /// i / kBlockSlots is record i. No blocks: it is not.
+  /// Of a list that is so short that its boxes are compared at once: slot i % kSlots of block
+  /// i / kSlots is record i. None in blocks: it is not.
   const BoxBlock* blocks;
-  std::uint32_t num_blocks;
+  std::uint32_t boxes_in_blocks;
   /// Of a list of several nodes: slot n is around all of node n.
   const Bounds* around_nodes;
   const BoxRecord* records;

@@ -77,11 +77,11 @@ kernels::BoxRecord recordOf(const PreparedBox& box) {
 /// @pre every one is for the kernels
 std::vector<kernels::BoxBlock> blocksOf(const std::vector<kernels::BoxRecord>& records,
                                         const double* scene_center) {
-  constexpr std::size_t kBlockSlots = kernels::kBlockSlots;
-  std::vector<kernels::BoxBlock> blocks((records.size() + kBlockSlots - 1) / kBlockSlots);
-  for (std::size_t k = 0; k < kBlockSlots * blocks.size(); ++k) {
-    kernels::BoxBlock& block = blocks[k / kBlockSlots];
-    const std::size_t slot = k % kBlockSlots;
+  constexpr std::size_t kSlots = kernels::kSlots;
+  std::vector<kernels::BoxBlock> blocks((records.size() + kSlots - 1) / kSlots);
+  for (std::size_t k = 0; k < kSlots * blocks.size(); ++k) {
+    kernels::BoxBlock& block = blocks[k / kSlots];
+    const std::size_t slot = k % kSlots;
     if (k >= records.size()) {
       for (int i = 0; i < 3; ++i) {
         block.extent[i][slot] = -kInf;

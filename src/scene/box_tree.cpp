@@ -15,7 +15,7 @@ namespace {
 /// Boxes that are sooner compared themselves than by their bounds.
 constexpr std::size_t kInBlocks = 16;
 /// Where a ray through all of the scene meets more than one of the bounds.
-constexpr std::size_t kCrowdedInBlocks = 32;
+constexpr std::size_t kCrowdedInBlocks = 48;
 static_assert(kCrowdedInBlocks <= 64, "a bit each");
 
 /// The median of a sample, so that a few boxes far away do not cost the others the precision of
@@ -125,7 +125,7 @@ kernels::SceneView BoxTree::view() const {
                       static_cast<std::uint32_t>(levels_[i].bounds.size())};
   }
   view.blocks = blocks_.data();
-  view.num_blocks = static_cast<std::uint32_t>(blocks_.size());
+  view.boxes_in_blocks = static_cast<std::uint32_t>(blocks_.empty() ? 0 : records_.size());
   view.around_nodes = &around_nodes_;
   view.records = records_.data();
   view.num_records = static_cast<std::uint32_t>(records_.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A ray in float, against eight whole boxes at once: for lists so short that bounds along the axes
-// of the world would not pay.
+// A ray in float, against whole boxes, eight or sixteen at once: for lists so short that bounds
+// along the axes of the world would not pay.
 //
 // With o, c relative to the center of the scene, w = c - o, e the half extents, R the axes, |.|_1
 // sums of absolute values, S = |o|_1 + |c|_1 + |e|_1 and u = 2^-24: where the ray is in the box,
@@ -16,33 +16,80 @@
 /// Below it, |R^T d| is raised.
 constexpr float kFlattestInBlock = 0x1p-60F;
 
-/// The slots whose boxes the ray may meet between its begin and its end, a bit each.
+template <typename Lanes>
+static Lanes loadLanes(const float* p);
+template <typename Lanes>
+static Lanes allLanes(float x);
+template <>
+inline Float8 loadLanes<Float8>(const float* p) {
+  return load8(p);
+}
+template <>
+inline Float8 allLanes<Float8>(float x) {
+  return all8(x);
+}
+template <>
+inline Float16 loadLanes<Float16>(const float* p) {
+  return load16(p);
+}
+template <>
+inline Float16 allLanes<Float16>(float x) {
+  return all16(x);
+}
+static inline void storeLanes(float* p, const Float8& a) {
+  store8(p, a);
+}
+static inline void storeLanes(float* p, const Float16& a) {
+  store16(p, a);
+}
+
+/// The slots from `first` on whose boxes the ray may meet between its begin and its end, a bit
+/// each, as many as there are lanes.
 /// @param near where it enters them, not too late
-static inline std::uint32_t meets(const BoxBlock& block, const FloatRay& ray, Float8& near) {
-  const Float8 pad = all8(ray.pad);
-  Float8 w[3];
-  Float8 d[3];
+template <typename Lanes>
+static inline std::uint32_t meets(const BoxBlock& block, std::uint32_t first, const FloatRay& ray,
+                                  Lanes& near) {
+  const auto slots = [first](const float* all) { return loadLanes<Lanes>(all + first); };
+  const Lanes pad = allLanes<Lanes>(ray.pad);
+  Lanes w[3];
+  Lanes d[3];
   for (int j = 0; j < 3; ++j) {
-    w[j] = load8(block.center[j]) - all8(ray.origin[j]);
-    d[j] = all8(ray.direction[j]);
+    w[j] = slots(block.center[j]) - allLanes<Lanes>(ray.origin[j]);
+    d[j] = allLanes<Lanes>(ray.direction[j]);
   }
-  Float8 nears[3];
-  Float8 fars[3];
+  Lanes nears[3];
+  Lanes fars[3];
   for (int i = 0; i < 3; ++i) {
-    const auto along = [&](const Float8* v) {
+    const auto along = [&](const Lanes* v) {
       return multiplyAdd(
-          load8(block.axis[i][2]), v[2],
-          multiplyAdd(load8(block.axis[i][1]), v[1], load8(block.axis[i][0]) * v[0]));
+          slots(block.axis[i][2]), v[2],
+          multiplyAdd(slots(block.axis[i][1]), v[1], slots(block.axis[i][0]) * v[0]));
     };
-    const Float8 slope = along(d);
-    const Float8 inverse = all8(1.0F) / larger(magnitude(slope), all8(kFlattestInBlock));
-    const Float8 middle = withSignOf(along(w), slope);
-    const Float8 extent = load8(block.extent[i]) + pad;
+    const Lanes slope = along(d);
+    const Lanes inverse =
+        allLanes<Lanes>(1.0F) / larger(magnitude(slope), allLanes<Lanes>(kFlattestInBlock));
+    const Lanes middle = withSignOf(along(w), slope);
+    const Lanes extent = slots(block.extent[i]) + pad;
     nears[i] = (middle - extent) * inverse;
     fars[i] = (middle + extent) * inverse;
   }
   // The end of the ray is the last that is known: a root and a quotient.
-  near = larger(larger(nears[0], nears[1]), larger(nears[2], all8(ray.begin_s)));
-  const Float8 far = smaller(smaller(smaller(fars[0], fars[1]), fars[2]), all8(ray.end_s));
+  near = larger(larger(nears[0], nears[1]), larger(nears[2], allLanes<Lanes>(ray.begin_s)));
+  const Lanes far =
+      smaller(smaller(smaller(fars[0], fars[1]), fars[2]), allLanes<Lanes>(ray.end_s));
   return notAbove(near, far);
+}
+
+/// All blocks of a list: the boxes that the ray may meet, a bit each.
+/// @param nears where it enters each
+template <typename Lanes>
+static inline std::uint64_t meetsBlocks(const SceneView& view, const FloatRay& ray, float* nears) {
+  constexpr std::uint32_t kLanes = sizeof(Lanes) / sizeof(float);
+  std::uint64_t met = 0;
+  for (std::uint32_t first = 0; first < view.boxes_in_blocks; first += kLanes) {
+    Lanes near;
+    met |= std::uint64_t{meets(view.blocks[first / kSlots], first % kSlots, ray, near)} << first;
+    storeLanes(nears + first, near);
+  }
+  return met;
 }

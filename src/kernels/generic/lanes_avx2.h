@@ -156,3 +156,6 @@ static inline void loadRays(const double* rays, Double4 center, Float16* origin,
                     _mm256_set_m128(four[3].direction[i], four[2].direction[i])};
   }
 }
+
+/// What boxes of a block are compared in, where there are more than eight.
+using BlockLanes = Float8;

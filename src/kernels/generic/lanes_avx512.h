@@ -123,3 +123,6 @@ static inline void loadRays(const double* rays, Double4 center, Float16* origin,
                           four[3].direction[i]);
   }
 }
+
+/// What boxes of a block are compared in, where there are more than eight.
+using BlockLanes = Float16;

@@ -166,7 +166,7 @@ struct Floats {
   Float4 v[kLanes / 4];
 };
 using Float16 = Floats<kSlots>;
-using Float8 = Floats<kBlockSlots>;
+using Float8 = Floats<8>;
 
 template <int kLanes, typename Function>
 static inline Floats<kLanes> each(Function&& f) {
@@ -186,7 +186,7 @@ static inline Float16 load16(const float* p) {
   return load<kSlots>(p);
 }
 static inline Float8 load8(const float* p) {
-  return load<kBlockSlots>(p);
+  return load<8>(p);
 }
 static inline Float16 all16(float x) {
   return each<kSlots>([&](int) { return quad(x); });
@@ -197,7 +197,7 @@ static inline Kept16 kept16(float x) {
   return x;
 }
 static inline Float8 all8(float x) {
-  return each<kBlockSlots>([&](int) { return quad(x); });
+  return each<8>([&](int) { return quad(x); });
 }
 template <int kLanes>
 static inline void store(float* p, const Floats<kLanes>& a) {
@@ -331,3 +331,6 @@ static inline void loadRays(const double* rays, const Double4& center, Float16* 
     direction[i] = load16(d);
   }
 }
+
+/// What boxes of a block are compared in, where there are more than eight.
+using BlockLanes = Float8;

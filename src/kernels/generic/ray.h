@@ -156,7 +156,7 @@ static inline bool prepareInDouble(const SceneView& view, const RayQuery& query,
     return Outcome::kNotTaken;
   }
   const double rough_end = roughEnd(query, f.scale, ray);
-  f.for_blocks = view.num_blocks > 0 && f.scale <= kLongestInBlocks &&
+  f.for_blocks = view.boxes_in_blocks > 0 && f.scale <= kLongestInBlocks &&
                  f.scale >= 1.0 / kLongestInBlocks &&
                  notBelow3(all4(kFarthestInBlocks), magnitude(relative)) == 7U;
   if (f.for_blocks) {

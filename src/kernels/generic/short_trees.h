@@ -42,13 +42,9 @@ static bool visitList(const SceneView& view, FloatRay& ray, Work& work, Visit& v
   alignas(64) float nears[kMostRootNodes * kSlots];
   std::uint64_t met[kRootWords] = {0, 0};
   if (ray.for_blocks) {
-    work.nodes += view.num_blocks;
-    for (std::uint32_t k = 0; k < view.num_blocks; ++k) {
-      Float8 near;
-      const std::uint64_t bits = meets(view.blocks[k], ray, near);
-      store8(nears + k * kBlockSlots, near);
-      met[0] |= bits << (k * kBlockSlots);
-    }
+    work.nodes += (view.boxes_in_blocks + kSlots - 1) / kSlots;
+    met[0] = view.boxes_in_blocks > 8 ? meetsBlocks<BlockLanes>(view, ray, nears)
+                                      : meetsBlocks<Float8>(view, ray, nears);
   } else {
     const Level& list = view.levels[0];
     work.nodes += list.nodes;
