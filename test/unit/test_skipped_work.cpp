@@ -62,7 +62,7 @@ QueryCounters castAll(const Scene& scene, double max_range = kInf) {
 }
 
 TEST(SkippedWork, AHandfulOfBoxesHasNoIndex) {
-  // Eight boxes at a time, and nothing else.
+  // One block of up to sixteen, and nothing else.
   EXPECT_EQ(castAll(Scene(turnedBoxes(5))).nodes, kRays);
   EXPECT_EQ(castAll(Scene(turnedBoxes(16))).nodes, kRays);
 }
