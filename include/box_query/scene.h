@@ -209,6 +209,10 @@ class Scene {
 
   /// The nearest box, by exact distance.
   Clearance clearance(const Segment& segment, const BoxMask* mask = nullptr) const noexcept;
+  /// The same of `count` segments, several of them under way at once.
+  /// @param clearances as many as segments
+  void clearance(const Segment* segments, std::size_t count, Clearance* clearances,
+                 const BoxMask* mask = nullptr) const noexcept;
 
   /// The first place along the segment within `radius` of a box: another box, often, than the
   /// nearest one.

@@ -40,15 +40,23 @@ namespace avx2 {
 #include "kernels/generic/list_together.h"
 #include "kernels/generic/box_distance.h"
 #include "kernels/generic/nearest.h"
+#include "kernels/generic/nearest_together.h"
 #include "kernels/generic/wide.h"
 #include "kernels/generic/cross.h"
 #include "kernels/generic/refine.h"
 // clang-format on
 }  // namespace avx2
 
-const Kernels kAvx2 = {
-    "avx2",    avx2::closest, avx2::any,   avx2::closestTogether, avx2::anyTogether,
-    avx2::all, avx2::nearest, avx2::cross, avx2::refine};
+const Kernels kAvx2 = {"avx2",
+                       avx2::closest,
+                       avx2::any,
+                       avx2::closestTogether,
+                       avx2::anyTogether,
+                       avx2::all,
+                       avx2::nearest,
+                       avx2::nearestTogether,
+                       avx2::cross,
+                       avx2::refine};
 
 }  // namespace box_query::kernels
 

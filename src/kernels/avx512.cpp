@@ -41,15 +41,23 @@ namespace avx512 {
 #include "kernels/generic/list_together.h"
 #include "kernels/generic/box_distance.h"
 #include "kernels/generic/nearest.h"
+#include "kernels/generic/nearest_together.h"
 #include "kernels/generic/wide.h"
 #include "kernels/generic/cross.h"
 #include "kernels/generic/refine.h"
 // clang-format on
 }  // namespace avx512
 
-const Kernels kAvx512 = {
-    "avx512",    avx512::closest, avx512::any,   avx512::closestTogether, avx512::anyTogether,
-    avx512::all, avx512::nearest, avx512::cross, avx512::refine};
+const Kernels kAvx512 = {"avx512",
+                         avx512::closest,
+                         avx512::any,
+                         avx512::closestTogether,
+                         avx512::anyTogether,
+                         avx512::all,
+                         avx512::nearest,
+                         avx512::nearestTogether,
+                         avx512::cross,
+                         avx512::refine};
 
 }  // namespace box_query::kernels
 

@@ -38,6 +38,12 @@ struct Kernels {
   void (*nearest)(const SceneView&, const SegmentQuery&, Approach approach, void* context,
                   Work& work);
 
+  /// The same of many segments, several of them at a time.
+  ///
+  /// @pre shrinks, of each
+  void (*nearest_together)(const SceneView&, const SegmentQuery* queries, std::size_t count,
+                           ApproachEach approach, void* context, Work& work);
+
   /// Where a component enters and leaves a box, if it is clear which faces it crosses there. Null
   /// where it is faster to work out one face after the other.
   Crossed (*cross)(const CrossingQuery&, Crossing& enter, Crossing& exit);

@@ -25,6 +25,7 @@ namespace portable {
 #include "kernels/generic/list_together.h"
 #include "kernels/generic/box_distance.h"
 #include "kernels/generic/nearest.h"
+#include "kernels/generic/nearest_together.h"
 // clang-format on
 }  // namespace portable
 
@@ -35,6 +36,7 @@ const Kernels kPortable = {"portable",
                            portable::anyTogether,
                            portable::all,
                            portable::nearest,
+                           portable::nearestTogether,
                            nullptr,
                            nullptr};
 

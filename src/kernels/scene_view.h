@@ -172,6 +172,9 @@ struct alignas(32) NearBox {
 /// Takes a box that may be within the bound.
 /// @return the bound from now on, which never grows; negative to end the query
 using Approach = double (*)(void* context, std::uint32_t box, const NearBox& near);
+/// The same of one segment of many.
+using ApproachEach = double (*)(void* context, std::size_t query, std::uint32_t box,
+                                const NearBox& near);
 
 /// A component and an oriented box.
 ///

@@ -151,9 +151,11 @@ std::vector<std::uint8_t> isClearEach(const Scene& scene, const std::vector<Segm
 
 std::vector<Clearance> clearanceEach(const Scene& scene, const std::vector<Segment>& segments,
                                      const BatchOptions& options) {
-  return askEach<Clearance>(segments, options, [&](const Segment& segment) {
-    return scene.clearance(segment, options.mask);
+  std::vector<Clearance> clearances(segments.size());
+  forEachCountedPart(segments.size(), options, [&](std::size_t begin, std::size_t end) {
+    scene.clearance(&segments[begin], end - begin, &clearances[begin], options.mask);
   });
+  return clearances;
 }
 
 std::vector<Blockage> firstBlockageEach(const Scene& scene, const std::vector<Segment>& segments,

@@ -4,6 +4,7 @@
 #include "geometry/distance_query.h"
 #include "geometry/prepared_box.h"
 #include "geometry/solve.h"
+#include "scene/nearest_box.h"
 #include "scene/scene_impl.h"
 #include "scene/search.h"
 
@@ -19,10 +20,6 @@
 namespace box_query {
 namespace {
 
-bool meet(const Segment& segment, const Box& any) {
-  return std::visit([&](const auto& box) { return testIntersection(segment, box); }, any);
-}
-
 bool isFartherThan(const Segment& segment, const Box& any, const DistanceBounds& bounds,
                    double radius) {
   // (What the bounds decide needs no box, which may be far away in memory.)
@@ -30,35 +27,6 @@ bool isFartherThan(const Segment& segment, const Box& any, const DistanceBounds&
          (bounds.upper > radius &&
           std::visit([&](const auto& box) { return isFarther(segment, box, bounds, radius); },
                      any));
-}
-
-/// A box that may be the nearest one.
-///
-/// With constructors of its own: for others GCC clears all members first, also the room for exact
-/// numbers that are hardly ever there, of 600 bytes.
-struct Nearby {
-  Nearby() {}  // NOLINT(modernize-use-equals-default)
-  Nearby(std::size_t number, const DistanceBounds& b) : box(number), bounds(b) {}
-
-  std::size_t box = kNoBox;
-  DistanceBounds bounds{0.0, std::numeric_limits<double>::infinity()};
-  std::optional<exact::Ratio> squared;
-};
-
-/// The exact squared distance, computed once.
-const exact::Ratio& squaredDistance(const Segment& segment, const Box& box, Nearby& nearby) {
-  if (!nearby.squared) {
-    nearby.squared =
-        std::visit([&](const auto& b) { return exactSquaredDistance(segment, b); }, box);
-  }
-  return *nearby.squared;
-}
-
-/// Exact order, ties by the index.
-bool isNearer(const Segment& segment, const SceneBoxes& boxes, Nearby& a, Nearby& b) {
-  const int order = compare(squaredDistance(segment, boxes.simplest(a.box), a),
-                            squaredDistance(segment, boxes.simplest(b.box), b));
-  return order < 0 || (order == 0 && a.box < b.box);
 }
 
 /// A box within the radius, with constructors of its own too.
@@ -122,34 +90,12 @@ bool Scene::isClear(const Segment& segment, double radius, const BoxMask* mask) 
 }
 
 Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const noexcept {
-  Nearby nearest;
-  NearestEstimate nearest_estimate;
-  bool met = false;
+  NearestBox nearest(segment, impl_->boxes);
   impl_->forEachNear(segment, std::numeric_limits<double>::infinity(), true, mask,
                      [&](std::size_t i, const DistanceBounds& bounds, const auto& estimate) {
-                       const Box& box = impl_->boxes.simplest(i);
-                       Nearby other(i, bounds);
-                       const bool meets = bounds.lower <= 0.0 && meet(segment, box);
-                       // Nothing is nearer than a box that is met.
-                       const bool is_nearer =
-                           meets ? !met || i < nearest.box
-                                 : nearest.box == kNoBox || bounds.upper < nearest.bounds.lower ||
-                                       (!met && bounds.lower <= nearest.bounds.upper &&
-                                        isNearer(segment, impl_->boxes, other, nearest));
-                       if (is_nearer) {
-                         nearest = std::move(other);
-                         nearest_estimate = estimate();
-                       }
-                       met = met || meets;
-                       return met ? 0.0 : nearest.bounds.upper;
+                       return nearest.offer(i, bounds, estimate);
                      });
-  if (nearest.box == kNoBox) {
-    return {};
-  }
-  const SegmentDistance d =
-      std::visit([&](const auto& box) { return roundedDistance(segment, box, nearest_estimate); },
-                 impl_->boxes.simplest(nearest.box));
-  return {nearest.box, d.distance, d.t, d.on_segment, d.on_box};
+  return nearest.clearance();
 }
 
 Blockage Scene::Impl::firstMet(const Segment& segment, const BoxMask* mask) const {

@@ -84,6 +84,7 @@ class SceneCheck {
       checkSegment(component.segment());
     }
     checkCastsTogether();
+    checkClearancesTogether();
   }
 
  private:
@@ -176,6 +177,29 @@ class SceneCheck {
           c.hit == alone.hit && c.box == alone.box && c.t_lower <= alone.t && alone.t <= c.t_upper,
           "castClosest" + argument, c.t_lower, alone.t);
       expect((any[i] != 0) == alone.hit, "castAny" + argument, any[i], alone.hit);
+    }
+  }
+
+  /// Clearances of segments together, more than are under way at once, against each alone.
+  void checkClearancesTogether() {
+    std::vector<Segment> segments;
+    while (segments.size() < 20) {
+      for (const Sample& component : sample_.components) {
+        segments.push_back(component.segment());
+        const Vector3 middle = 0.5 * component.origin + 0.5 * component.end;
+        segments.push_back({component.origin, random_.chance(0.5) ? component.origin : middle});
+      }
+    }
+    std::vector<Clearance> clearances(segments.size());
+    scene_.clearance(segments.data(), segments.size(), clearances.data(), mask());
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      component_ = &sample_.components[i / 2 % sample_.components.size()];
+      const Clearance alone = scene_.clearance(segments[i], mask());
+      const Clearance& c = clearances[i];
+      expect(c.box == alone.box && c.distance == alone.distance &&
+                 (c.t == alone.t || c.box == kNoBox) && same(c.on_segment, alone.on_segment) &&
+                 same(c.on_box, alone.on_box),
+             "clearance together", c.distance, alone.distance);
     }
   }
 

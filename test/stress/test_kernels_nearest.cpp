@@ -136,6 +136,65 @@ TEST_P(NearestKernelTest, OfferTheNearestAtAnyDepthAndScale) {
   }
 }
 
+/// What was offered to many segments, each with the bound that it has since.
+struct ManySearches {
+  const std::vector<Box>& boxes;
+  const std::vector<Segment>& segments;
+  std::vector<double> bounds;
+
+  static double offer(void* context, std::size_t query, std::uint32_t box,
+                      const kernels::NearBox& near) {
+    auto& self = *static_cast<ManySearches*>(context);
+    const double distance = distanceTo(self.segments[query], self.boxes[box]);
+    EXPECT_LE(near.lower, distance);
+    EXPECT_GE(near.upper, distance);
+    self.bounds[query] = std::min(self.bounds[query], distance);
+    return self.bounds[query];
+  }
+};
+
+TEST_P(NearestKernelTest, OfferTheNearestOfManySegments) {
+  for (const std::size_t count : {1, 16, 17, 100, 129, 2500}) {
+    Random random(22, count, 0);
+    const std::vector<Box> boxes = scattered(random, count, 6.0);
+    const double side = 6.0 * std::cbrt(static_cast<double>(count));
+    const BoxTree tree(prepareAll(boxes));
+    const kernels::SceneView view = tree.view();
+    BoxMask mask(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      mask.set(i, random.chance(0.5));
+    }
+    for (const std::size_t num_segments : {1, 16, 17, 40}) {
+      std::vector<Segment> segments;
+      std::vector<kernels::SegmentQuery> queries;
+      while (segments.size() < num_segments) {
+        const Vector3 start = random.uniformVector(-0.2 * side, 1.2 * side);
+        const double length = random.chance(0.2) ? 0.0 : random.magnitude(-6, 6);
+        segments.push_back({start, start + length * random.uniformVector(-1.0, 1.0)});
+        const Segment& s = segments.back();
+        queries.push_back({{s.start[0], s.start[1], s.start[2]},
+                           {s.end[0], s.end[1], s.end[2]},
+                           kInf,
+                           true,
+                           random.chance(0.1) ? mask.words() : nullptr});
+      }
+      ManySearches searches{boxes, segments, std::vector<double>(num_segments, kInf)};
+      kernels::Work work;
+      GetParam()->nearest_together(view, queries.data(), num_segments, ManySearches::offer,
+                                   &searches, work);
+      for (std::size_t k = 0; k < num_segments; ++k) {
+        double least = kInf;
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+          if (queries[k].mask == nullptr || mask[i]) {
+            least = std::min(least, distanceTo(segments[k], boxes[i]));
+          }
+        }
+        EXPECT_EQ(least, searches.bounds[k]) << "segment " << k << " among " << count << " boxes";
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Every, NearestKernelTest, testing::ValuesIn(allKernels()), nameOf);
 
 }  // namespace

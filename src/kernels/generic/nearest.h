@@ -19,6 +19,7 @@ struct FloatSegment {
   float slack;
   float squared_length;
 
+  FloatSegment() = default;
   FloatSegment(const SceneView& view, const SegmentQuery& query) : squared_length(0.0F) {
     float size = 0.0F;
     for (int i = 0; i < 3; ++i) {
@@ -126,6 +127,20 @@ class LaneSegment<0> {
   Float16 slack_;
 };
 
+/// Rounded up, and finite, so that no empty slot is within it.
+static inline float boundInFloat(double bound) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  const float up =
+      static_cast<float>(bound * bounds::kUp) + static_cast<float>(bounds::kFloatUnderflow);
+  return up < kMost ? up : kMost;
+}
+
+/// Whether boxes lie beside all of a segment as beside its middle.
+static inline bool isShort(const SceneView& view, const FloatSegment& segment) {
+  const auto free = static_cast<float>(view.mean_free_path);
+  return segment.squared_length < 0.2F * free * free;
+}
+
 /// Nodes and records that are still to be looked at: where only the nearest box matters nearest
 /// first, of each node's children, or else all that are within the bound.
 template <int kSteps>
@@ -156,13 +171,7 @@ class NearestSearch {
   }
 
  private:
-  void setBound(double bound) {
-    // Rounded up, and finite, so that no empty slot is within it.
-    constexpr float kMost = std::numeric_limits<float>::max();
-    const float up =
-        static_cast<float>(bound * bounds::kUp) + static_cast<float>(bounds::kFloatUnderflow);
-    bound_ = up < kMost ? up : kMost;
-  }
+  void setBound(double bound) { bound_ = boundInFloat(bound); }
 
   Float16 lowerBounds(int level, std::uint32_t node) {
     ++work_.nodes;
@@ -275,10 +284,9 @@ static void nearest(const SceneView& view, const SegmentQuery& query, Approach a
   if (view.depth > 0) {
     const FloatSegment segment(view, query);
     const auto free = static_cast<float>(view.mean_free_path);
-    const float length = segment.squared_length;
-    if (length < 0.2F * free * free) {
+    if (isShort(view, segment)) {
       searchAfterSteps<0>(view, query, segment, approach, context, work);
-    } else if (length < 2.0F * free * free) {
+    } else if (segment.squared_length < 2.0F * free * free) {
       searchAfterSteps<1>(view, query, segment, approach, context, work);
     } else {
       searchAfterSteps<3>(view, query, segment, approach, context, work);

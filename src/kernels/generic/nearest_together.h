@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Many segments down one tree, each to the box that is nearest to it. First all go straight to a
+// box, by way of the nearest nodes, a level at a time: what one waits for comes from memory while
+// others are compared, and nothing branches on what was compared. Then what of the nodes that were
+// passed by may be nearer still makes one list a level, of all segments.
+
+constexpr int kSegmentsTogether = 16;
+constexpr int kListedNear = kSegmentsTogether * kMostRootNodes * kSlots;
+
+/// A segment under way.
+struct NearCompanion {
+  const SegmentQuery* query;
+  std::size_t number;
+  FloatSegment segment;
+  float bound;
+  std::uint32_t at;  ///< the node, or the record, that it goes to
+  int lowest;        ///< the lowest level where it was at a node
+  std::uint32_t node[kMaxLevels];
+  /// Lower bounds of the slots that it passed by, of roots and of each node below.
+  alignas(64) float roots[kMostRootNodes * kSlots];
+  alignas(64) float below[kMaxLevels][kSlots];
+};
+
+class NearestTogether {
+ public:
+  NearestTogether(const SceneView& view, ApproachEach approach, void* context, Work& work)
+      : view_(view),
+        top_(view.depth - 1),
+        roots_(static_cast<int>(view.levels[top_].nodes)),
+        approach_(approach),
+        context_(context),
+        work_(work) {}
+
+  bool isFull() const { return count_ == kSegmentsTogether; }
+  void add(std::size_t number, const SegmentQuery& query, const FloatSegment& segment) {
+    NearCompanion& c = segments_[count_++];
+    c.query = &query;
+    c.number = number;
+    c.segment = segment;
+    c.bound = boundInFloat(query.bound);
+  }
+
+  void run() {
+    for (int k = 0; k < count_; ++k) {
+      passRoots(segments_[k]);
+    }
+    for (int level = top_ - 1; level >= 0; --level) {
+      for (int k = 0; k < count_; ++k) {
+        if (segments_[k].lowest == level + 1) {
+          passNode(segments_[k], level);
+        }
+      }
+    }
+    for (int k = 0; k < count_; ++k) {
+      if (segments_[k].lowest == 0) {
+        visit(segments_[k], segments_[k].at);
+      }
+    }
+    for (int level = 0; level <= top_; ++level) {
+      lookBack(level);
+    }
+    count_ = 0;
+  }
+
+ private:
+  void fetch(int level, std::uint32_t child) const {
+    if (level == 0) {
+      const BoxRecord& record = view_.records[child];
+      prefetch(&record);
+      prefetch(&record.column[2]);
+    } else {
+      const Bounds& bounds = view_.levels[level - 1].bounds[child];
+      for (int i = 0; i < 3; ++i) {
+        prefetch(bounds.plane[0][i]);
+        prefetch(bounds.plane[1][i]);
+      }
+    }
+  }
+
+  /// On to a child. (A node may be empty whose boxes are gone: there it ends.)
+  void goTo(NearCompanion& c, int level, std::uint32_t node, int slot, float nearest) const {
+    if (nearest <= std::numeric_limits<float>::max()) {
+      c.lowest = level;
+      c.at = view_.levels[level].first[node] + static_cast<std::uint32_t>(slot);
+      fetch(level, c.at);
+    }
+  }
+
+  void passRoots(NearCompanion& c) {
+    c.lowest = top_ + 1;
+    const LaneSegment<0> segment(c.segment);
+    const Float16 nowhere = all16(std::numeric_limits<float>::infinity());
+    Float16 least = nowhere;
+    for (int n = 0; n < roots_; ++n) {
+      const Float16 lower = smaller(segment.distances(view_.levels[top_].bounds[n]), nowhere);
+      store16(c.roots + n * kSlots, lower);
+      least = smaller(least, lower);
+    }
+    work_.nodes += static_cast<std::uint64_t>(roots_);
+    const float nearest = smallestLane(least);
+    int at = 0;
+    for (int n = roots_ - 1; n >= 0; --n) {
+      const std::uint32_t bits = notAbove(load16(c.roots + n * kSlots), all16(nearest));
+      at = bits != 0 ? n * kSlots + lowestBit(bits) : at;
+    }
+    c.roots[at] = std::numeric_limits<float>::infinity();
+    goTo(c, top_, static_cast<std::uint32_t>(at / kSlots), at % kSlots, nearest);
+  }
+
+  void passNode(NearCompanion& c, int level) {
+    const LaneSegment<0> segment(c.segment);
+    const std::uint32_t node = c.at;
+    const Float16 lower = smaller(segment.distances(view_.levels[level].bounds[node]),
+                                  all16(std::numeric_limits<float>::infinity()));
+    ++work_.nodes;
+    const float nearest = smallestLane(lower);
+    const int slot = lowestBit(notAbove(lower, all16(nearest)));
+    c.node[level] = node;
+    store16(c.below[level], withInfinity(lower, slot));
+    goTo(c, level, node, slot, nearest);
+  }
+
+  /// At what was passed by on a level, and may be nearer than what was found since.
+  void lookBack(int level) {
+    alignas(64) std::uint32_t list[kListedNear + kSlots];
+    alignas(64) float nears[kListedNear + kSlots];
+    int listed = 0;
+    const std::uint32_t* first = view_.levels[level].first;
+    for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count_); ++k) {
+      const NearCompanion& c = segments_[k];
+      const auto listNear = [&](std::uint32_t node, const float* waiting) {
+        const Float16 lower = load16(waiting);
+        listed = append(notAbove(lower, all16(c.bound)), first[node] | (k << kNumberBits), lower,
+                        list, nears, listed);
+      };
+      if (level < top_ && c.lowest <= level) {
+        listNear(c.node[level], c.below[level]);
+      }
+      for (int n = 0; level == top_ && n < roots_; ++n) {
+        listNear(static_cast<std::uint32_t>(n), c.roots + n * kSlots);
+      }
+    }
+    goOn(level, list, nears, listed);
+  }
+
+  /// Looks at children of a level.
+  void goOn(int level, const std::uint32_t* children, const float* nears, int count) {
+    if (level == 0) {
+      for (int i = 0; i < count; ++i) {
+        NearCompanion& c = segments_[children[i] >> kNumberBits];
+        if (nears[i] <= c.bound) {
+          visit(c, children[i] & kLargestNumber);
+        }
+      }
+    } else {
+      descend(level - 1, children, nears, count);
+    }
+  }
+
+  void descend(int level, const std::uint32_t* nodes, const float* nears, int count) {
+    alignas(64) std::uint32_t list[kListedTogether + kSlots];
+    alignas(64) float nears_below[kListedTogether + kSlots];
+    int listed = 0;
+    for (int i = 0; i < count; ++i) {
+      if (i + 1 < count) {
+        fetch(level + 1, nodes[i + 1] & kLargestNumber);
+      }
+      const std::uint32_t node = nodes[i] & kLargestNumber;
+      const NearCompanion& c = segments_[nodes[i] >> kNumberBits];
+      if (!(nears[i] <= c.bound)) {
+        continue;
+      }
+      ++work_.nodes;
+      const Float16 lower = LaneSegment<0>(c.segment).distances(view_.levels[level].bounds[node]);
+      listed = append(notAbove(lower, all16(c.bound)),
+                      view_.levels[level].first[node] | (nodes[i] & ~kLargestNumber), lower, list,
+                      nears_below, listed);
+      if (listed > kListedTogether - kSlots) {
+        goOn(level, list, nears_below, listed);
+        listed = 0;
+      }
+    }
+    if (listed > 0) {
+      goOn(level, list, nears_below, listed);
+    }
+  }
+
+  void visit(NearCompanion& c, std::uint32_t record) {
+    ++work_.boxes;
+    work_.turned_boxes += view_.records[record].isAligned() ? 0 : 1;
+    NearBox near;
+    estimate(view_.records[record], *c.query, near);
+    const double bound = approach_(context_, c.number, view_.box_of_record[record], near);
+    const float up = boundInFloat(bound);
+    c.bound = up < c.bound ? up : c.bound;
+  }
+
+  const SceneView& view_;
+  int top_;
+  int roots_;
+  ApproachEach approach_;
+  void* context_;
+  Work& work_;
+  int count_ = 0;
+  NearCompanion segments_[kSegmentsTogether];
+};
+
+static void nearestTogether(const SceneView& view, const SegmentQuery* queries, std::size_t count,
+                            ApproachEach approach, void* context, Work& work) {
+  work = Work();
+  if (view.depth == 0) {
+    return;
+  }
+  const bool is_short_enough = view.levels[0].nodes <= kLargestNumber / kSlots;
+  NearestTogether together(view, approach, context, work);
+  for (std::size_t i = 0; i < count; ++i) {
+    const FloatSegment segment(view, queries[i]);
+    if (is_short_enough && queries[i].mask == nullptr && isShort(view, segment)) {
+      together.add(i, queries[i], segment);
+      if (together.isFull()) {
+        together.run();
+      }
+      continue;
+    }
+    // What is looked at of a long segment, or of few boxes, differs too much from one to the next.
+    struct One {
+      ApproachEach approach;
+      void* context;
+      std::size_t number;
+    } one{approach, context, i};
+    const auto approachOne = [](void* to, std::uint32_t box, const NearBox& near) {
+      const One& o = *static_cast<const One*>(to);
+      return o.approach(o.context, o.number, box, near);
+    };
+    Work alone;
+    nearest(view, queries[i], approachOne, &one, alone);
+    work.nodes += alone.nodes;
+    work.boxes += alone.boxes;
+    work.turned_boxes += alone.turned_boxes;
+  }
+  together.run();
+}

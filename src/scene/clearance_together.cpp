@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/counters.h"
+#include "scene/nearest_box.h"
+#include "scene/scene_impl.h"
+#include "scene/search.h"
+
+#include <box_query/scene.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <optional>
+
+namespace box_query {
+namespace {
+
+/// Segments that the kernels get at once: so few that what is found of them stays in cache.
+constexpr std::size_t kSegments = 16;
+
+kernels::SegmentQuery segmentQuery(const Segment& segment, const BoxMask* mask) {
+  return {{segment.start[0], segment.start[1], segment.start[2]},
+          {segment.end[0], segment.end[1], segment.end[2]},
+          std::numeric_limits<double>::infinity(),
+          true,
+          mask != nullptr ? mask->words() : nullptr};
+}
+
+/// Has a box fetched that will be read.
+void prefetch(const Box* box) {
+  if (box != nullptr) {
+    const char* bytes = reinterpret_cast<const char*>(box);
+    __builtin_prefetch(bytes);
+    __builtin_prefetch(bytes + sizeof(Box) - 1);
+  }
+}
+
+}  // namespace
+
+void Scene::clearance(const Segment* segments, std::size_t count, Clearance* clearances,
+                      const BoxMask* mask) const noexcept {
+  for (std::size_t first = 0; first < count; first += kSegments) {
+    const std::size_t end = std::min(first + kSegments, count);
+    kernels::SegmentQuery queries[kSegments];
+    std::size_t numbers[kSegments];
+    std::optional<NearestBox> nearest[kSegments];
+    std::size_t taken = 0;
+    for (std::size_t i = first; i < end; ++i) {
+      if (isForKernels(segments[i], impl_->view)) {
+        nearest[taken].emplace(segments[i], impl_->boxes);
+        numbers[taken] = i;
+        queries[taken++] = segmentQuery(segments[i], mask);
+      } else {
+        clearances[i] = clearance(segments[i], mask);
+      }
+    }
+    const auto approach = [](void* context, std::size_t query, std::uint32_t box,
+                             const kernels::NearBox& near) {
+      auto* all = static_cast<std::optional<NearestBox>*>(context);
+      return all[query]->offer(std::size_t{box}, DistanceBounds{near.lower, near.upper},
+                               [&] { return estimateOf(near); });
+    };
+    kernels::Work work;
+    impl_->kernels.nearest_together(impl_->view, queries, taken, approach, nearest, work);
+    countWork(work);
+    for (std::size_t k = 0; k < taken; ++k) {
+      prefetch(nearest[k]->box());
+    }
+    for (std::size_t k = 0; k < taken; ++k) {
+      forEachOther(impl_->tree, true, impl_->boxes.size(), mask, [&](std::size_t i) {
+        const NearestEstimate estimate = estimateOf(segments[numbers[k]], impl_->boxes.prepared(i));
+        return nearest[k]->offer(i, estimate.bounds, [&] { return estimate; }) >= 0.0;
+      });
+      clearances[numbers[k]] = nearest[k]->clearance();
+    }
+  }
+}
+
+}  // namespace box_query
