@@ -176,6 +176,7 @@ class Checker {
       ++verdict_.by_oracle;
     }
     ++verdict_.right[answer.service];
+    verdict_.ages.push_back(1e3 * got.scene_age);
     const bool met = isMet(got);
     verdict_.complete += met && got.complete ? 1 : 0;
     verdict_.moved += met && isMoved(request) ? 1 : 0;
@@ -203,6 +204,7 @@ void add(const Verdict& more, Verdict& sum) {
   sum.moved += more.moved;
   sum.by_oracle += more.by_oracle;
   sum.unknown_scenes += more.unknown_scenes;
+  sum.ages.insert(sum.ages.end(), more.ages.begin(), more.ages.end());
   sum.wrong.insert(sum.wrong.end(), more.wrong.begin(), more.wrong.end());
   sum.refused.insert(sum.refused.end(), more.refused.begin(), more.refused.end());
 }

@@ -19,6 +19,7 @@ struct Verdict {
   std::size_t complete = 0;   ///< of them, that met a box in a complete scene
   std::size_t moved = 0;      ///< and that met one in a moving frame
   std::size_t by_oracle = 0;  ///< checked by the oracle too
+  std::vector<double> ages;   ///< [ms] of the scenes that they are from, when they were asked
   std::vector<std::string> wrong;
   /// Rightly: the transform of a request that came at once had not come within ~transform_timeout.
   std::vector<std::string> refused;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "load/clients.h"
 
-#include <mutex>
 #include <thread>
-
-#include <ros/node_handle.h>
 
 namespace box_query::load {
 namespace {
@@ -31,17 +28,6 @@ Answer askOne(std::uint64_t seed, bool persistent, Caller& caller) {
 
 }  // namespace
 
-bool Caller::call(std::size_t service, const Bytes& request, Bytes& response) {
-  const ServiceName& name = services().at(service);
-  ros::ServiceClient& client = clients_.at(service);
-  if (!client.isValid()) {
-    ros::ServiceClientOptions options("/box_query/" + std::string(name.name), name.md5, persistent_,
-                                      ros::M_string());
-    client = ros::NodeHandle().serviceClient(options);
-  }
-  return client.call(request, response, name.md5);
-}
-
 Said readSaid(const Bytes& response) {
   // The stream only reads.
   ros::serialization::IStream stream(const_cast<std::uint8_t*>(response.data.data()),
@@ -63,12 +49,13 @@ std::vector<Answer> ask(double seconds, unsigned seed, SceneLog& scenes) {
     threads.emplace_back([&, client] {
       const bool persistent = client % 2 == 0;
       Caller caller(persistent);
+      Caller learner(true);
       std::uint64_t number = (std::uint64_t{seed} * kClients + client) << 32;
       while (ros::Time::now() < end) {
         Answer answer = askOne(number++, persistent, caller);
         if (!answer.lost) {
           answer.scene_id = readSaid(answer.response).scene_id;
-          scenes.notice(answer.scene_id);
+          scenes.learn(answer.scene_id, learner);
         }
         answers[client].push_back(std::move(answer));
       }

@@ -3,14 +3,12 @@
 /// Clients that ask one question after the other, and what they were answered.
 #pragma once
 
-#include "load/questions.h"
+#include "load/caller.h"
 #include "load/scene_log.h"
 
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include <ros/service_client.h>
 
 namespace box_query::load {
 
@@ -29,19 +27,6 @@ struct Answer {
   Bytes response;
 
   double milliseconds() const { return (end - start).toSec() * 1e3; }
-};
-
-/// Calls services of the node; for one thread.
-class Caller {
- public:
-  explicit Caller(bool persistent) : persistent_(persistent) {}
-
-  /// @return false if the call failed: no answer came.
-  bool call(std::size_t service, const Bytes& request, Bytes& response);
-
- private:
-  const bool persistent_;
-  std::array<ros::ServiceClient, kServices> clients_;
 };
 
 /// What the node has said of itself in a response of any service but get_scene: they begin alike.

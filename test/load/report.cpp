@@ -16,11 +16,11 @@ using benchmark::quantile;
 
 constexpr std::size_t kMostSentences = 10;
 
-void printLatencies(const std::string& name, const std::vector<double>& ms, std::ostream& out) {
+void printQuantiles(const std::string& name, const std::vector<double>& ms, std::ostream& out) {
   if (ms.empty()) {
     return;
   }
-  out << format("%-28s %8zu", name.c_str(), ms.size());
+  out << format("%-32s %8zu", name.c_str(), ms.size());
   for (const double share : {0.5, 0.9, 0.99, 0.999, 1.0}) {
     out << format(" %8.2f", quantile(ms, share));
   }
@@ -64,16 +64,17 @@ bool Measured::isFlawless() const {
 
 void print(const Measured& measured, std::ostream& out) {
   const Verdict& verdict = measured.verdict;
-  out << format("%-28s %8s %8s %8s %8s %8s %8s\n", "ms an answer", "answers", "median", "90 %",
-                "99 %", "99.9 %", "longest");
+  out << format("%-32s %8s %8s %8s %8s %8s %8s\n", "ms", "answers", "median", "90 %", "99 %",
+                "99.9 %", "longest");
   for (const bool persistent : {true, false}) {
     const std::string connection = persistent ? ", kept connection" : ", new one";
     for (std::size_t service = 0; service < kServices; ++service) {
-      printLatencies(services()[service].name + connection,
+      printQuantiles(services()[service].name + connection,
                      latencies(measured.answers, service, persistent), out);
     }
-    printLatencies("all" + connection, latencies(measured.answers, kServices, persistent), out);
+    printQuantiles("all" + connection, latencies(measured.answers, kServices, persistent), out);
   }
+  printQuantiles("age of the scene", verdict.ages, out);
   out << format(
       "\n%zu clients asked for %.0f s: %zu questions, %zu answered rightly from %zu "
       "scenes (%zu checked by the oracle too), %zu of which met a box in a complete "

@@ -3,17 +3,15 @@
 /// Which messages the scenes that answers name are made of, as ~get_scene says while it keeps them.
 #pragma once
 
+#include "load/caller.h"
 #include "load/world.h"
 
 #include <array>
-#include <condition_variable>
 #include <cstdint>
 #include <map>
 #include <mutex>
 #include <set>
 #include <string>
-#include <thread>
-#include <vector>
 
 namespace box_query::load {
 
@@ -24,33 +22,19 @@ struct SceneFacts {
   std::string reason;
 };
 
-/// Asks, from a thread of its own, about every scene that somebody has noticed.
+/// What the clients have learnt of scenes. All functions may be called from any thread.
 class SceneLog {
  public:
-  SceneLog();
-  ~SceneLog();
-  SceneLog(const SceneLog&) = delete;
-  SceneLog& operator=(const SceneLog&) = delete;
+  /// Asks the node about the scene at once, since it may soon be forgotten, unless somebody has.
+  void learn(std::uint64_t scene_id, Caller& caller);
 
-  void notice(std::uint64_t scene_id);
-
-  /// What was learnt of the scenes, once all that were noticed were asked for.
-  std::map<std::uint64_t, SceneFacts> facts();
-  /// Why others could not be learnt.
-  const std::vector<std::string>& problems() const { return problems_; }
+  /// Of the scenes that the node still knew.
+  std::map<std::uint64_t, SceneFacts> facts() const;
 
  private:
-  void work();
-
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::set<std::uint64_t> noticed_;
-  std::vector<std::uint64_t> to_ask_;
-  bool busy_ = false;
-  bool stopping_ = false;
+  mutable std::mutex mutex_;
+  std::set<std::uint64_t> asked_;
   std::map<std::uint64_t, SceneFacts> facts_;
-  std::vector<std::string> problems_;
-  std::thread thread_;
 };
 
 }  // namespace box_query::load
