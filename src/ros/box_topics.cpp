@@ -3,6 +3,8 @@
 
 #include "ros/publishers.h"
 
+#include <set>
+#include <string>
 #include <utility>
 
 #include <boost/function.hpp>
@@ -53,13 +55,17 @@ void BoxTopics::subscribe(std::size_t topic) {
 // publishers of another. Where none is connected, subscribing anew lets the next one be of any type
 // again; where one is, the others cannot be heard, and the scene is incomplete.
 void BoxTopics::checkPublishers(const TellUnheard& tell) {
-  const auto known = askForPublishers();
+  std::set<std::string> names;
+  for (const Topic& topic : topics_) {
+    names.insert(topic.name);
+  }
+  const auto known = askForPublishers(names);
   for (std::size_t index = 0; known && index < topics_.size(); ++index) {
     Topic& topic = topics_[index];
-    const auto found = known->find(topic.name);
-    const Publishers published = found == known->end() ? Publishers() : found->second;
-    const std::size_t connected = topic.subscriber.getNumPublishers();
-    const bool missing = published.nodes > connected;
+    const Publishers& publishers = known->at(topic.name);
+    const std::size_t connected = publishers.connected.size();
+    const std::size_t registered = publishers.registered.size();
+    const bool missing = registered > connected;
     if (connected == 0 && (topic.connected || missing)) {
       topic.subscriber.shutdown();
       subscribe(index);
@@ -67,7 +73,7 @@ void BoxTopics::checkPublishers(const TellUnheard& tell) {
     const bool unheard = connected > 0 && missing && topic.missing;  // not just on its way
     topic.connected = connected > 0;
     topic.missing = missing;
-    tell(index, unheard ? published.nodes - connected : 0, published.type);
+    tell(index, unheard ? registered - connected : 0, publishers.type);
   }
 }
 

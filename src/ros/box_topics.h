@@ -37,18 +37,13 @@ class BoxTopics {
   /// from one thread only, not within `receive`.
   void checkPublishers(const TellUnheard& tell);
 
-  /// How many publishers of the topic are connected; from the same thread.
-  std::size_t publishers(std::size_t topic) const {
-    return topics_[topic].subscriber.getNumPublishers();
-  }
-
  private:
   struct Topic {
     std::string name;
     ros::Subscriber subscriber;
     // At the last look:
     bool connected = false;  ///< to a publisher
-    bool missing = false;    ///< the master knew of more publishers than were connected
+    bool missing = false;    ///< more publishers were there than were connected
   };
 
   void subscribe(std::size_t topic);

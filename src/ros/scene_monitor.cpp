@@ -7,6 +7,7 @@
 #include "ros/box_tracker.h"
 #include "ros/history.h"
 #include "ros/publishers.h"
+#include "ros/ros_api.h"
 #include "ros/scene_builder.h"
 #include "ros/succession.h"
 #include "ros/transforms.h"
@@ -64,6 +65,7 @@ struct SceneMonitor::Impl {
 
   void checkPublishers();
   void forgetFormerPublishers();
+  void meet(std::size_t topic, const Succession::Connection& connection);
   void receive(std::size_t topic, AnyBoxMessage& message);
   bool isBack(const ros::Time& time) const;
   void noticeTime();
@@ -111,7 +113,8 @@ SceneMonitor::Impl::Impl(const ros::NodeHandle& node, const Parameters& given)
                    }
                  }),
       tracker(parameters, transforms.buffer()),
-      successions(parameters.box_topics.size(), Succession(ros::this_node::getName())),
+      successions(parameters.box_topics.size(),
+                  Succession(ros::this_node::getName(), ownAddress())),
       now(ros::Time::now()),
       history(parameters),
       noticed(nanoseconds(now)),
@@ -148,13 +151,12 @@ void SceneMonitor::Impl::forgetFormerPublishers() {
   for (std::size_t topic = 0; topic < successions.size(); ++topic) {
     if (successions[topic].asks(Clock::now())) {
       lock.unlock();
-      auto known = addressesOfPublishers(parameters.box_topics[topic].topic);
-      const std::size_t connected = topics.publishers(topic);
+      const auto there = addressesOfPublishers(parameters.box_topics[topic].topic);
       lock.lock();
-      if (!known || known->size() < connected) {
-        continue;  // the master was restarted: who it does not know may be there all the same
+      if (!there) {
+        return;
       }
-      if (const auto last_word = successions[topic].look(std::move(*known))) {
+      if (const auto last_word = successions[topic].look(*there)) {
         tracker.forgetBefore(topic, *last_word);
         bell.ring();
       }
@@ -162,15 +164,29 @@ void SceneMonitor::Impl::forgetFormerPublishers() {
   }
 }
 
+/// Notes who publishes when somebody new speaks: by the time of a look it may be gone again.
+void SceneMonitor::Impl::meet(std::size_t topic, const Succession::Connection& connection) {
+  std::unique_lock<std::timed_mutex> lock(mutex);
+  if (successions[topic].isNew(connection)) {
+    lock.unlock();
+    auto connected = connectedPublishers();
+    lock.lock();
+    successions[topic].hear(connection,
+                            connected ? std::move((*connected)[parameters.box_topics[topic].topic])
+                                      : Succession::Addresses(),
+                            tracker.lastWord(), Clock::now());
+  }
+}
+
 void SceneMonitor::Impl::receive(std::size_t topic, AnyBoxMessage& message) {
   const std::string problem = message.decoded.problem;
   const BoxSource* former = nullptr;
+  meet(topic, message.connection);
   {
     const std::lock_guard<std::timed_mutex> lock(mutex);
     builder.noteChange();
     noticeTime();
     former = tracker.lastSource(topic);
-    successions[topic].hear(message.connection, tracker.lastWord(), Clock::now());
     tracker.receive(topic, message.source, std::move(message.decoded), now);
     history.follow(tracker, now);
     tf_wanted = tracker.isWaiting();

@@ -8,9 +8,13 @@
 #include <stdexcept>
 #include <thread>
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
 #include <ros/init.h>
 #include <ros/master.h>
 #include <std_msgs/String.h>
+#include <sys/socket.h>
+#include <unistd.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
 namespace box_query {
@@ -26,6 +30,30 @@ void tellMaster(const std::string& method, const std::vector<std::string>& argum
   }
   EXPECT_TRUE(ros::master::execute(method, request, response, payload, false)) << method;
 }
+
+/// Where something listens, so that it counts as a node that is there, and never answers.
+class Address {
+ public:
+  Address() : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in any = {};
+    any.sin_family = AF_INET;
+    any.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof(any);
+    auto* const address = reinterpret_cast<sockaddr*>(&any);
+    EXPECT_EQ(bind(socket_, address, size), 0);
+    EXPECT_EQ(listen(socket_, 5), 0);
+    EXPECT_EQ(getsockname(socket_, address, &size), 0);
+    name = "http://127.0.0.1:" + std::to_string(ntohs(any.sin_port)) + "/";
+  }
+  ~Address() { close(socket_); }
+  Address(const Address&) = delete;
+  Address& operator=(const Address&) = delete;
+
+  std::string name;
+
+ private:
+  const int socket_;
+};
 
 TEST_F(MonitorOfOneTopic, NeedsNoWordIfItIsNotRequired) {
   parameters_.box_topics[0].required = false;
@@ -82,16 +110,17 @@ TEST_F(MonitorOfOneTopic, IsIncompleteWhileAPublisherOfAnotherTypeCannotBeHeard)
   ASSERT_TRUE(becomes(true));
   // This process may not advertise a second type itself. The master tells only the type of whoever
   // came last, here that of the one that is heard.
-  tellMaster("registerPublisher", {"/second", topic_, "std_msgs/String", "http://127.0.0.1:1/"});
+  const Address second;
+  const Address third;
+  tellMaster("registerPublisher", {"/second", topic_, "std_msgs/String", second.name});
   ASSERT_TRUE(becomes(false));
   expectReason({"std_msgs/String"});
-  tellMaster("registerPublisher",
-             {"/third", topic_, "visualization_msgs/MarkerArray", "http://127.0.0.1:2/"});
+  tellMaster("registerPublisher", {"/third", topic_, "visualization_msgs/MarkerArray", third.name});
   EXPECT_TRUE(eventually([&] {
     return completenessOf(*monitor_).reason.find("2 of the publishers of topic " + topic_) == 0;
   })) << completenessOf(*monitor_).reason;
-  tellMaster("unregisterPublisher", {"/second", topic_, "http://127.0.0.1:1/"});
-  tellMaster("unregisterPublisher", {"/third", topic_, "http://127.0.0.1:2/"});
+  tellMaster("unregisterPublisher", {"/second", topic_, second.name});
+  tellMaster("unregisterPublisher", {"/third", topic_, third.name});
   EXPECT_TRUE(becomes(true));
 }
 

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A master, a node and what publishes to it, each a process of its own that can be killed."""
+import contextlib
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import xmlrpc.client
+
+import rosgraph
+import rospy
+from box_query.srv import CastRay, CastRayRequest, GetScene, GetSceneRequest
+from geometry_msgs.msg import Vector3
+
+TIMEOUT = 30.0  # [s] for whatever is waited for: it is measured, and never fails for being slow
+NODE = '/box_query'
+FOLDER = os.path.dirname(os.path.abspath(__file__))
+
+
+def free_port():
+    with socket.socket() as one:
+        one.bind(('127.0.0.1', 0))
+        return one.getsockname()[1]
+
+
+def megabytes(pid, key='VmRSS'):
+    """Memory of a process: VmRSS is what is resident now, VmHWM the most that ever was."""
+    with open('/proc/%d/status' % pid) as status:
+        return next(int(line.split()[1]) / 1024 for line in status if line.startswith(key + ':'))
+
+
+class Fault(AssertionError):
+    """A promise that was not kept."""
+
+
+def check(kept, *what):
+    if not kept:
+        raise Fault(' '.join(map(str, what)))
+
+
+class Speaker:
+    """A process of speaker.py: speaks from `since` on."""
+
+    def __init__(self, world, arguments):
+        self.process = world.start([sys.executable, os.path.join(FOLDER, 'speaker.py')] + list(map(str, arguments)),
+                                   stdout=subprocess.PIPE)
+        self.since = float(self.process.stdout.readline() or 'nan')
+        check(self.since == self.since, 'a publisher did not start:', arguments)
+
+    def end(self, by=signal.SIGKILL):
+        self.process.send_signal(by)
+        self.process.wait(TIMEOUT)
+
+
+class World:
+    """Ends all of its processes at its end, however that comes."""
+
+    def __init__(self, node):
+        self.node_path = node
+        self.processes = []
+        self.node = None
+        self.speakers = 0
+
+    def __enter__(self):
+        self.stack = contextlib.ExitStack()
+        home = self.stack.enter_context(tempfile.TemporaryDirectory())
+        self.stack.callback(self.end)
+        self.port = free_port()
+        os.environ.update(ROS_MASTER_URI='http://127.0.0.1:%d' % self.port, ROS_IP='127.0.0.1', ROS_HOME=home,
+                          ROS_LOG_DIR=home)
+        self.start_master()
+        rospy.init_node('asker', disable_signals=True, disable_rosout=True)
+        return self
+
+    def __exit__(self, *error):
+        return self.stack.__exit__(*error)
+
+    def start(self, command, **options):
+        self.processes.append(subprocess.Popen(command, stdin=subprocess.DEVNULL, **options))
+        return self.processes[-1]
+
+    def end(self):
+        for by in signal.SIGINT, signal.SIGKILL:  # roslaunch ends its own nodes
+            for process in filter(lambda one: one.poll() is None, reversed(self.processes)):
+                process.send_signal(by)
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(TIMEOUT)
+
+    def start_master(self):
+        """Returns the time from which on it answers."""
+        self.master = self.start(['rosmaster', '--core', '-p', str(self.port)], stdout=subprocess.DEVNULL)
+        return self.until(lambda: rosgraph.Master('/asker').is_online(), 'a master')
+
+    def start_node(self, **parameters):
+        for name, value in parameters.items():
+            rospy.set_param(NODE + '/' + name, value)
+        self.node = self.start([self.node_path])
+        self.until(self.scene, 'the node')
+
+    def launch(self, *arguments):
+        """The node, by its launch file."""
+        self.start(['roslaunch', 'box_query', 'box_query.launch'] + list(arguments))
+        self.until(self.scene, 'the launched node')
+
+    def node_pid(self):
+        if self.node:
+            return self.node.pid
+        address = rosgraph.Master('/asker').lookupNode(NODE)
+        return xmlrpc.client.ServerProxy(address).getPid('/asker')[2]
+
+    def speak(self, *arguments, name=None):
+        self.speakers += 1
+        return Speaker(self, [name or 'speaker_%d' % self.speakers, *arguments])
+
+    def scene(self):
+        """What the node knows, or None if it does not answer."""
+        return self.call('get_scene', GetScene, GetSceneRequest())
+
+    def described(self):
+        """The scene, for a message."""
+        scene = self.scene()
+        return scene and 'the scene has %s: %s' % (
+            [(topic, number, pose.position.x) for topic, number, pose in
+             zip(scene.box_topics[:20], scene.box_ids, scene.poses)], scene.reason or 'complete')
+
+    def ray(self):
+        """What a ray from the map's origin along x hits, or None if the node does not answer."""
+        request = CastRayRequest(direction=Vector3(1, 0, 0), allow_incomplete=True)
+        request.header.frame_id = 'map'
+        return self.call('cast_ray', CastRay, request)
+
+    @staticmethod
+    def call(service, kind, request):
+        try:
+            return rospy.ServiceProxy(NODE + '/' + service, kind)(request)
+        except (rospy.ServiceException, rospy.ROSException, OSError):
+            return None
+
+    def answers(self, x, count, complete=True):
+        """Whether the nearest of so many unit cubes is said to be at x, exactly."""
+        scene, ray = self.scene(), self.ray()
+        return (scene is not None and ray is not None and ray.success and ray.hit and ray.range == x - 0.5 and
+                len(scene.box_ids) == count and ray.complete == scene.complete == complete)
+
+    def until(self, condition, what):
+        """Waits for `condition` and returns the monotonic time at which it held."""
+        deadline = time.monotonic() + TIMEOUT
+        while not condition():
+            if time.monotonic() > deadline:
+                raise Fault('%s did not come; %s' % (what, self.described()))
+            time.sleep(0.005)
+        return time.monotonic()
+
+    def await_reason(self, *words):
+        """Waits until the scene is incomplete for a reason with these words, and returns it."""
+        seen = []
+
+        def names_it():
+            scene = self.scene()
+            seen.append(scene.reason if scene else 'no answer')
+            return scene and not scene.complete and all(word in scene.reason for word in words)
+
+        try:
+            self.until(names_it, 'a reason')
+        except Fault:
+            raise Fault('%s is not in "%s"' % (words, seen[-1]))
+        return seen[-1]
