@@ -6,11 +6,11 @@
 #include <ros/console.h>
 
 namespace box_query {
-
 Node::Node(const ros::NodeHandle& nh, ros::NodeHandle& private_nh)
     : monitor_(nh, Parameters::fromRos(private_nh)),
       server_(private_nh, monitor_),
-      diagnostics_(private_nh, monitor_, server_) {
+      diagnostics_(private_nh, monitor_, server_),
+      registration_(server_.services(), private_nh.getNamespace()) {
   if (isKernelChoiceRefused()) {
     ROS_WARN("BOX_QUERY_KERNEL names no kernels that this CPU can run: portable, avx2, avx512");
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "ros/diagnostics.h"
+#include "ros/registration.h"
 #include "ros/server.h"
 
 #include <box_query/ros/scene_monitor.h>
@@ -24,6 +25,7 @@ class Node {
   SceneMonitor monitor_;
   Server server_;
   Diagnostics diagnostics_;
+  Registration registration_;
 };
 
 }  // namespace box_query

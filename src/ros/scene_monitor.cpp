@@ -7,6 +7,7 @@
 #include "ros/box_tracker.h"
 #include "ros/history.h"
 #include "ros/publishers.h"
+#include "ros/registration.h"
 #include "ros/ros_api.h"
 #include "ros/scene_builder.h"
 #include "ros/succession.h"
@@ -101,6 +102,7 @@ struct SceneMonitor::Impl {
   BoxTopics topics;
   std::thread worker;
   std::thread watcher;
+  Registration registration;
 };
 
 SceneMonitor::Impl::Impl(const ros::NodeHandle& node, const Parameters& given)

@@ -49,12 +49,12 @@ Server::Server(ros::NodeHandle& private_nh, SceneMonitor& monitor)
   for (const TopicState& topic : monitor.watchedScene()->topics) {
     topics += (topics.empty() ? "" : ", ") + topic.parameters.topic;
   }
-  std::string services;
-  for (const ros::ServiceServer& service : services_) {
-    services += (services.empty() ? "" : ", ") + service.getService();
+  std::string names;
+  for (const std::string& service : services()) {
+    names += (names.empty() ? "" : ", ") + service;
   }
   ROS_INFO_STREAM("boxes of " << topics << " in frame " << monitor.parameters().fixed_frame
-                              << " are asked for through " << services);
+                              << " are asked for through " << names);
 }
 
 Server::~Server() {
@@ -65,6 +65,15 @@ Server::~Server() {
   }
   queue_->disable();
   queue_->clear();
+}
+
+std::vector<std::string> Server::services() const {
+  std::vector<std::string> names;
+  names.reserve(services_.size());
+  for (const ros::ServiceServer& service : services_) {
+    names.push_back(service.getService());
+  }
+  return names;
 }
 
 SnapshotPtr Server::sceneAt(const ros::Time& scene_time) {

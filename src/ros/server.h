@@ -40,6 +40,8 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
+  /// Their names.
+  std::vector<std::string> services() const;
   RequestCounts counts() const { return {answered_, refused_}; }
   /// What the queries of all requests had to do.
   QueryCounters queryCounts() const { return totals_.get(); }
