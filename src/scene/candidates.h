@@ -52,8 +52,8 @@ inline std::optional<Ray> withDirectionNearOne(const Ray& ray) {
 /// false.
 template <typename Visit>
 bool forEachCandidate(const kernels::Found& found, Visit&& visit) {
-  if (found.count == 1) {
-    return visit(found.candidates[0]);
+  if (found.count <= 1) {
+    return found.count == 0 || visit(found.candidates[0]);
   }
   kernels::Candidate sorted[kernels::Found::kCapacity];
   const auto end = std::copy(found.candidates, found.candidates + found.count, sorted);

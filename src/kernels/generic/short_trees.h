@@ -5,11 +5,12 @@
 constexpr int kNodesAWord = 64 / kSlots;
 constexpr int kRootWords = kMostRootNodes / kNodesAWord;
 
-/// Compares the ray with up to kMostRootNodes nodes.
+/// Compares the ray with up to kMostRootNodes nodes. (Inlined, so that the ray stays in registers.)
 /// @param nears where it enters each slot, as far as it does
 /// @param met a bit for each slot that it may meet
-static inline void meetsNodes(const Bounds* nodes, int count, const RayLanes& ray, float* nears,
-                              std::uint64_t* met) {
+[[gnu::always_inline]] static inline void meetsNodes(const Bounds* nodes, int count,
+                                                     const RayLanes& ray, float* nears,
+                                                     std::uint64_t* met) {
   for (int w = 0, k = 0; k < count; ++w) {
     std::uint64_t word = 0;
     for (int shift = 0; shift < 64 && k < count; shift += kSlots, ++k) {
