@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # What the commands of this package share: find ROS, install what is missing, build. To be sourced by bash.
-#   bq_set_up [--yes] GROUP...    groups of packages: build, demo, viewer, test, benchmark, peers, checks
+#   bq_set_up [--yes] GROUP...    groups of packages: build, demo, viewer, test, valgrind, benchmark, peers, checks
 #   bq_configure [--with-tests] BUILD_DIR [CMAKE_OPTION...]
 #     where nothing is configured; without --with-tests no test is, since the tests need packages of their own. A
 #     configuration without tests gets them when they are wanted, and keeps what is built.
@@ -16,6 +16,7 @@ bq_packages() {
   case $bq_ros/$1 in
     */build) echo build-essential cmake libeigen3-dev libboost-dev libtbb-dev ;;&
     */test) echo libgmp-dev libgtest-dev ;;&
+    */valgrind) echo valgrind ;;
     */benchmark) echo python3-matplotlib ;;
     */peers) echo libembree-dev libbullet-dev libfcl-dev libode-dev ;;
     debian/build) echo catkin libroscpp-dev libtf2-dev libtf2-ros-dev libtf2-msgs-dev libstd-msgs-dev \

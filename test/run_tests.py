@@ -88,6 +88,12 @@ def chosen(tests, names, left_out):
             not (left_out and re.search(left_out, test.name))]
 
 
+def under(command, tests):
+    """The gtests of them, run as arguments of a command, which slows them down."""
+    return [test._replace(command=command.split() + test.command, time_limit=10 * test.time_limit)
+            for test in tests if test.kind == 'gtest']
+
+
 def targets_of(tests):
     """What is built for these tests, each once."""
     return sorted({target for test in tests for target in test.targets})
@@ -236,11 +242,14 @@ def main():
                         help='a skip counts as failed unless this matches its name and reason')
     parser.add_argument('--leave-out', metavar='REGEX', help='not the tests whose name it matches')
     parser.add_argument('--without-scripts', action='store_true', help='only programs that were built here')
+    parser.add_argument('--under', metavar='COMMAND', help='only gtests, each as arguments of this command')
     parser.add_argument('--targets', action='store_true', help='print what is to be built for these tests; run none')
     parser.add_argument('names', nargs='*', metavar='NAME', help='only tests whose name contains NAME')
     arguments = parser.parse_args()
     tests = [test for test in read_list(os.path.join(arguments.build_dir, 'tests.txt'))
              if test.kind != 'script' or not arguments.without_scripts]
+    if arguments.under:
+        tests = under(arguments.under, tests)
     try:
         tests = chosen(tests, arguments.names, arguments.leave_out)
     except ValueError as error:

@@ -133,6 +133,11 @@ class RunTests(unittest.TestCase):
         self.assertEqual([(test.name, case.outcome) for test, cases in results for case in cases],
                          [('first', PASSED), ('second', PASSED)])
 
+    def test_what_runs_under_a_command_is_given_to_it(self):
+        tests = [Test('one', kind, 3.0, [], ['program', 'argument']) for kind in ('gtest', 'rostest', 'script')]
+        self.assertEqual(run_tests.under('tool --option', tests),
+                         [Test('one', 'gtest', 30.0, [], ['tool', '--option', 'program', 'argument'])])
+
     def test_a_script_is_one_case(self):
         self.assertEqual([case.outcome for case in self.run_command('script', 'pass')], [PASSED])
         self.assertEqual([case.outcome for case in self.run_command('script', 'exit(3)')], [FAILED])
