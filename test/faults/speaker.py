@@ -3,9 +3,15 @@
 """A process that publishes until it is killed. It prints the monotonic time of its first message.
 
   boxes TOPIC TYPE FRAME X ID...   unit cubes at X, as a MarkerArray, one Marker (a CUBE_LIST) or, of no box, a String
+  many TOPIC COUNT FRAME HOW       as one CUBE_LIST: with another id each time (flood), once in a while (once), or turned so
+                                   that rays along them look at each (row)
   tf PARENT CHILD X                where CHILD is, now
   clock SECONDS                    /clock from then on, as fast as the wall's
 """
+import io
+import itertools
+import math
+import struct
 import sys
 import time
 
@@ -41,6 +47,31 @@ def boxes(topic, kind, frame, x, *ids):
     return topic, MarkerArray, lambda: MarkerArray([cube(frame, float(x), int(number)) for number in ids])
 
 
+def many(topic, count, frame, how):
+    """Serialised only once: it is to be sent as fast as can be."""
+    turn = 0.5 * math.pi / 4 if how == 'row' else 0.0
+    start = 4.0 if how == 'row' else 1.0
+    step = 2.0**-10 if how == 'once' else 1.0
+    marker = cube(frame, 0.0, 0)
+    marker.type = Marker.CUBE_LIST
+    marker.pose.orientation.x, marker.pose.orientation.w = math.sin(turn), math.cos(turn)
+    marker.scale = Vector3(0.5, 0.5, 0.5) if how == 'row' else Vector3(1, 1, 1)
+    empty = io.BytesIO()
+    marker.serialize(empty)
+    # Before the points: all but two empty arrays, two empty strings and a flag.
+    head, tail = empty.getvalue()[:-17], empty.getvalue()[-13:]
+    points = b''.join(struct.pack('<3d', start + step * i, 0, 0) for i in range(int(count)))
+    number = head.index(b'cubes') + len(b'cubes')
+    numbers = itertools.count(1)
+
+    class Many(Marker):
+        def serialize(self, buffer):
+            buffer.write(head[:number] + struct.pack('<i', next(numbers) if how == 'flood' else 0) + head[number + 4:])
+            buffer.write(struct.pack('<I', int(count)) + points + tail)
+
+    return topic, Many, Many
+
+
 def tf(parent, child, x):
     def transform():
         one = TransformStamped(child_frame_id=child)
@@ -60,13 +91,14 @@ def clock(start):
 def main():
     name, role, *arguments = sys.argv[1:]
     rospy.init_node(name, disable_rosout=True)
-    topic, kind, message = {'boxes': boxes, 'tf': tf, 'clock': clock}[role](*arguments)
-    publisher = rospy.Publisher(topic, kind, queue_size=1, latch=role == 'boxes')
+    topic, kind, message = {'boxes': boxes, 'many': many, 'tf': tf, 'clock': clock}[role](*arguments)
+    publisher = rospy.Publisher(topic, kind, queue_size=1, latch=role in ('boxes', 'many'))
     publisher.publish(message())
     print(time.monotonic(), flush=True)
+    pause = {'flood': 0.0, 'once': 3600.0, 'row': 3600.0}.get(arguments[-1], PERIOD)
     while not rospy.is_shutdown():
+        time.sleep(pause)
         publisher.publish(message())
-        time.sleep(PERIOD)
 
 
 if __name__ == '__main__':

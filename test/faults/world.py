@@ -15,7 +15,7 @@ import rospy
 from box_query.srv import CastRay, CastRayRequest, GetScene, GetSceneRequest
 from geometry_msgs.msg import Vector3
 
-TIMEOUT = 30.0  # [s] for whatever is waited for: it is measured, and never fails for being slow
+TIMEOUT = 60.0  # [s] for whatever is waited for: it is measured, and never fails for being slow
 NODE = '/box_query'
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 
@@ -63,6 +63,7 @@ class World:
         self.processes = []
         self.node = None
         self.speakers = 0
+        self.proxies = {}
 
     def __enter__(self):
         self.stack = contextlib.ExitStack()
@@ -115,6 +116,22 @@ class World:
         self.speakers += 1
         return Speaker(self, [name or 'speaker_%d' % self.speakers, *arguments])
 
+    def client(self, role, await_line=True):
+        one = self.start([sys.executable, os.path.join(FOLDER, 'client.py'), role], stdout=subprocess.PIPE)
+        check(not await_line or one.stdout.readline(), 'no client')
+        return one
+
+    def long_batch(self):
+        """A client whose batch the node works on for minutes. It prints the answer."""
+        def cpu():
+            with open('/proc/%d/stat' % self.node_pid()) as stat:
+                return sum(map(int, stat.read().rpartition(')')[2].split()[11:13])) / os.sysconf('SC_CLK_TCK')
+        before = cpu()
+        client = self.client('batch', await_line=False)
+        self.until(lambda: cpu() > before + 1.0, 'work on the batch')
+        check(client.poll() is None, 'the batch has ended already')
+        return client
+
     def scene(self):
         """What the node knows, or None if it does not answer."""
         return self.call('get_scene', GetScene, GetSceneRequest())
@@ -132,18 +149,30 @@ class World:
         request.header.frame_id = 'map'
         return self.call('cast_ray', CastRay, request)
 
-    @staticmethod
-    def call(service, kind, request):
+    @contextlib.contextmanager
+    def connected(self):
+        """Within this, calls go through connections that are there before."""
+        self.proxies = {name: rospy.ServiceProxy(NODE + '/' + name, kind, persistent=True)
+                        for name, kind in (('get_scene', GetScene), ('cast_ray', CastRay))}
+        check(self.scene() and self.ray(), 'the node does not answer')
         try:
-            return rospy.ServiceProxy(NODE + '/' + service, kind)(request)
+            yield
+        finally:
+            self.proxies = {}
+
+    def call(self, service, kind, request):
+        try:
+            return (self.proxies.get(service) or rospy.ServiceProxy(NODE + '/' + service, kind))(request)
         except (rospy.ServiceException, rospy.ROSException, OSError):
             return None
 
     def answers(self, x, count, complete=True):
-        """Whether the nearest of so many unit cubes is said to be at x, exactly."""
-        scene, ray = self.scene(), self.ray()
-        return (scene is not None and ray is not None and ray.success and ray.hit and ray.range == x - 0.5 and
-                len(scene.box_ids) == count and ray.complete == scene.complete == complete)
+        """Whether the nearest of so many unit cubes (None: of any number) is said to be at x, exactly."""
+        ray = self.ray()
+        if not (ray and ray.success and ray.hit and ray.range == x - 0.5 and ray.complete == complete):
+            return False
+        scene = count and self.scene()
+        return not count or scene is not None and len(scene.box_ids) == count and scene.complete == complete
 
     def until(self, condition, what):
         """Waits for `condition` and returns the monotonic time at which it held."""
