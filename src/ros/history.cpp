@@ -34,6 +34,13 @@ bool sameBits(const Box& a, const Box& b) {
              a);
 }
 
+/// What malloc adds to a block, and a shared pointer to what it points to.
+constexpr std::size_t kBlock = 32;
+
+std::size_t bytesOf(const std::string& text) {
+  return text.capacity() > 15 ? text.capacity() + kBlock : 0;
+}
+
 }  // namespace
 
 PastScene::PastScene(const ros::Time& begin, const Draft& draft, const PastScene* before)
@@ -62,6 +69,13 @@ PastScene::PastScene(const ros::Time& begin, const Draft& draft, const PastScene
   }
   namespaces_.shrink_to_fit();
   stamps_.shrink_to_fit();
+  std::size_t frame = sizeof(PastScene) + kBlock + namespaces_.size() * sizeof(NamespacePtr) +
+                      stamps_.size() * sizeof(StampRun);
+  for (const TopicState& topic : topics_) {
+    frame += sizeof(topic) + bytesOf(topic.parameters.topic) + bytesOf(topic.problem);
+  }
+  size_ += frame;
+  size_beside_before_ += frame;
 }
 
 PastScene::NamespacePtr PastScene::find(const std::string& topic, const std::string& ns) const {
@@ -78,6 +92,10 @@ bool PastScene::isSame(const NamedBox& before, const BoxName& name, const Box& b
   return before.id == name.id && before.label == name.label && sameBits(before.box, box);
 }
 
+std::size_t PastScene::sizeOf(const NamedBox& box) {
+  return sizeof(NamedBox) + kBlock + bytesOf(box.label);
+}
+
 PastScene::NamespacePtr PastScene::share(const Draft& draft, std::size_t begin, std::size_t end,
                                          const NamespacePtr& before) {
   static const std::vector<std::shared_ptr<const NamedBox>> none;
@@ -87,6 +105,9 @@ PastScene::NamespacePtr PastScene::share(const Draft& draft, std::size_t begin, 
   made->boxes.reserve(end - begin);
   bool all_same = old.size() == end - begin;
   std::size_t at = 0;  // both are in the order of ids
+  std::size_t size = sizeof(Namespace) + kBlock + bytesOf(made->topic) + bytesOf(made->ns) +
+                     (end - begin) * sizeof(made->boxes[0]);
+  std::size_t shared = 0;
   for (std::size_t i = begin; i < end; ++i) {
     const BoxName& name = draft.snapshot.names[i];
     while (at < old.size() && old[at]->id < name.id) {
@@ -94,12 +115,16 @@ PastScene::NamespacePtr PastScene::share(const Draft& draft, std::size_t begin, 
     }
     if (at < old.size() && isSame(*old[at], name, draft.boxes[i])) {
       made->boxes.push_back(old[at++]);
+      shared += sizeOf(*made->boxes.back());
     } else {
       made->boxes.push_back(
           std::make_shared<const NamedBox>(NamedBox{name.id, name.label, draft.boxes[i]}));
       all_same = false;
     }
+    size += sizeOf(*made->boxes.back());
   }
+  size_ += size;
+  size_beside_before_ += all_same ? 0 : size - shared;
   return all_same ? before : made;
 }
 
@@ -125,7 +150,13 @@ SnapshotPtr PastScene::restored() const {
 
 History::History(const Parameters& parameters)
     : duration_(static_cast<std::int64_t>(parameters.history * 1e9)),
-      max_scenes_(static_cast<std::size_t>(parameters.max_past_scenes)) {}
+      max_scenes_(static_cast<std::size_t>(parameters.max_past_scenes)),
+      max_size_(static_cast<std::size_t>(parameters.max_history_memory) * 1000000) {}
+
+void History::clear() {
+  scenes_.clear();
+  size_ = 0;
+}
 
 void History::follow(BoxTracker& tracker, const ros::Time& now) {
   if (!keeps() || now.isZero()) {
@@ -150,12 +181,22 @@ void History::add(const ros::Time& begin, const Draft& draft) {
   const PastScene* const last = scenes_.empty() ? nullptr : scenes_.back().get();
   scenes_.push_back(std::make_shared<const PastScene>(last ? std::max(begin, last->begin()) : begin,
                                                       draft, last));
+  size_ += last ? scenes_.back()->sizeBesideBefore() : scenes_.back()->size();
   // The first one stays until the next has been so for the whole duration.
   const std::int64_t oldest = nanoseconds(begin) - duration_;
-  while (scenes_.size() > max_scenes_ ||
-         (scenes_.size() > 1 && nanoseconds(scenes_[1]->begin()) <= oldest)) {
-    scenes_.pop_front();
+  while (
+      scenes_.size() > max_scenes_ ||
+      (scenes_.size() > 1 && (size_ > max_size_ || nanoseconds(scenes_[1]->begin()) <= oldest))) {
+    dropFirst();
   }
+}
+
+/// What the next one shares with it stays.
+/// @pre there is a next one
+void History::dropFirst() {
+  size_ -= scenes_[0]->size() + scenes_[1]->sizeBesideBefore();
+  size_ += scenes_[1]->size();
+  scenes_.pop_front();
 }
 
 std::shared_ptr<const PastScene> History::at(const ros::Time& time) const {
@@ -179,7 +220,8 @@ std::string History::missingAt(const ros::Time& time, const ros::Time& now) cons
     text << "the ROS clock has not started: publish /clock";
   } else if (!at(time) || time.toNSec() > now.toNSec()) {
     text << "scenes are known from " << begin() << " to " << now
-         << ", now: ask for one of these, for 0 (now), or raise ~history or ~max_past_scenes";
+         << ", now: ask for one of these, for 0 (now), or raise ~history, ~max_past_scenes or "
+            "~max_history_memory";
   } else {
     return "";
   }

@@ -25,6 +25,10 @@ class PastScene {
   /// What the draft says is so from `begin` on. `before` may be null.
   PastScene(const ros::Time& begin, const Draft& draft, const PastScene* before);
 
+  /// [bytes] that it takes, about, by itself and beside the one before.
+  std::size_t size() const { return size_; }
+  std::size_t sizeBesideBefore() const { return size_beside_before_; }
+
   const ros::Time& begin() const { return begin_; }
   std::uint64_t id() const { return id_; }
   /// The snapshot that the draft would have become.
@@ -49,8 +53,9 @@ class PastScene {
   };
 
   NamespacePtr find(const std::string& topic, const std::string& ns) const;
-  static NamespacePtr share(const Draft& draft, std::size_t begin, std::size_t end,
-                            const NamespacePtr& before);
+  NamespacePtr share(const Draft& draft, std::size_t begin, std::size_t end,
+                     const NamespacePtr& before);
+  static std::size_t sizeOf(const NamedBox& box);
   static bool isSame(const NamedBox& before, const BoxName& name, const Box& box);
 
   ros::Time begin_;
@@ -60,9 +65,12 @@ class PastScene {
   std::vector<TopicState> topics_;
   std::vector<NamespacePtr> namespaces_;
   std::vector<StampRun> stamps_;  ///< whole sets have one
+  std::size_t size_ = 0;
+  std::size_t size_beside_before_ = 0;
 };
 
-/// Keeps what was so in the last Parameters::history seconds, in at most max_past_scenes scenes.
+/// Keeps what was so in the last Parameters::history seconds, in at most max_past_scenes scenes and
+/// max_history_memory.
 /// Not thread safe.
 class History {
  public:
@@ -75,7 +83,7 @@ class History {
   void follow(BoxTracker& tracker, const ros::Time& now);
   /// What the draft says is so from `begin` on, or, if that is earlier, from when the last one was.
   void add(const ros::Time& begin, const Draft& draft);
-  void clear() { scenes_.clear(); }
+  void clear();
 
   /// What was so at `time`; null before the first scene that is kept.
   std::shared_ptr<const PastScene> at(const ros::Time& time) const;
@@ -85,11 +93,14 @@ class History {
   std::string missingAt(const ros::Time& time, const ros::Time& now) const;
 
  private:
+  void dropFirst();
   void addIfNew(BoxTracker& tracker, const ros::Time& begin);
 
   const std::int64_t duration_;  ///< [ns]
   const std::size_t max_scenes_;
+  const std::size_t max_size_;  ///< [bytes]
   std::deque<std::shared_ptr<const PastScene>> scenes_;
+  std::size_t size_ = 0;  ///< [bytes] of all: the first by itself, each beside the one before
 };
 
 }  // namespace box_query

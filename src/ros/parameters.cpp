@@ -46,6 +46,7 @@ const Entry kNumbers[] = {
     {"max_kept_boxes", &P::max_kept_boxes, {0, 1e8, ""}, "boxes in all of these together; the oldest go first, the latest stays"},
     {"history", &P::history, {0, 3600, "s"}, "ROS time that past scenes are remembered for `scene_time`; 0: none are"},
     {"max_past_scenes", &P::max_past_scenes, {1, 1e6, ""}, "scenes that are remembered so, one a change; the oldest go first"},
+    {"max_history_memory", &P::max_history_memory, {1, 1e6, "MB"}, "what they take together, about; the oldest go first, the latest stays"},
     {"marker_rate", &P::marker_rate, {0.1, 100, "Hz"}, "`~markers` is published at most so often"},
     {"marker_lifetime", &P::marker_lifetime, {0.1, 3600, "s"}, "how long the markers of a query stay"},
     {"max_marker_queries", &P::max_marker_queries, {0, 10000, ""}, "queries that are drawn at once, the latest ones"},

@@ -234,6 +234,39 @@ std::size_t bytesOfScene(int moved, bool all_again) {
   return (allocated - before) / kScenes;
 }
 
+TEST(HistoryMemory, IsBounded) {
+  for (const int moved : {10, 1000}) {
+    Parameters parameters = keeping(1000, 1000);
+    parameters.max_history_memory = 1;
+    const std::size_t start = allocated;
+    History history(parameters);
+    World world = thousand();
+    for (auto& [key, entry] : world) {
+      entry.label = std::string(100, 'x');
+    }
+    std::size_t largest = 0;
+    const std::size_t before = allocated - start;
+    for (int step = 1; step <= 100; ++step) {
+      for (int i = 0; i < moved; ++i) {
+        world[Key("/boxes", "rack", (i + 7 * step) % 1000)].box.center.y() += 1.0;
+      }
+      history.add(ros::Time(step), draftOf(world, std::uint64_t(step)));
+      largest = std::max(largest, allocated - start - before);
+    }
+    EXPECT_LT(largest, 1100000U);
+    EXPECT_GT(largest, 700000U) << "what is allowed is used";
+    EXPECT_NE(history.at(ros::Time(100)), nullptr);
+    EXPECT_EQ(history.at(ros::Time(1)), nullptr);
+    const double seconds = 100.0 - history.begin().toSec();
+    EXPECT_GE(seconds, moved == 10 ? 20.0 : 1.0) << "of boxes that stay there is one";
+    history.clear();
+    for (int step = 101; step <= 103; ++step) {
+      history.add(ros::Time(step), draftOf(world, std::uint64_t(step)));
+    }
+    EXPECT_EQ(history.begin(), ros::Time(101)) << "none of what was cleared counts";
+  }
+}
+
 TEST(HistoryMemory, SharesWhatDidNotChange) {
   const std::size_t start = allocated;
   const SnapshotPtr whole = PastScene(ros::Time(1), draftOf(thousand(), 1), nullptr).restored();

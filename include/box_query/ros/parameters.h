@@ -64,6 +64,8 @@ struct Parameters {
   double history = 0.0;
   /// Scenes that are remembered so, one a change; the oldest go first.
   int max_past_scenes = 1000;
+  /// [MB] that they take together, about; the oldest go first, the latest stays.
+  int max_history_memory = 1000;
 
   /// [Hz] at most at which ~markers is published.
   double marker_rate = 10.0;
