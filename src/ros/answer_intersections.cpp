@@ -43,15 +43,15 @@ void answerFor(const Component& component, const BoxMask* mask, Context& context
 
 }  // namespace
 
-void check(const FindIntersectionsRequest& request, std::size_t /*max_queries*/) {
-  checkCommon(request);
-  checkFinite({"origin"}, fromMessage(request.origin));
+void check(const FindIntersectionsRequest& request, const Limits& limits) {
+  checkCommon(request, limits);
+  checkPoint({"origin"}, fromMessage(request.origin), limits);
   switch (request.component) {
     case FindIntersectionsRequest::LINE:
     case FindIntersectionsRequest::RAY:
       return checkDirection({"direction"}, fromMessage(request.direction));
     case FindIntersectionsRequest::SEGMENT:
-      return checkFinite({"end"}, fromMessage(request.end));
+      return checkPoint({"end"}, fromMessage(request.end), limits);
     default:
       refuse({"component"},
              "is " + std::to_string(request.component) + ": give LINE (0), RAY (1) or SEGMENT (2)");

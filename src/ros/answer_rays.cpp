@@ -51,27 +51,27 @@ void draw(const Ray& ray, double max_range, const Hit& hit, bool miss_means_free
 
 }  // namespace
 
-void check(const CastRayRequest& request, std::size_t /*max_queries*/) {
-  checkCommon(request);
-  checkFinite({"origin"}, fromMessage(request.origin));
+void check(const CastRayRequest& request, const Limits& limits) {
+  checkCommon(request, limits);
+  checkPoint({"origin"}, fromMessage(request.origin), limits);
   checkDirection({"direction"}, fromMessage(request.direction));
   checkMaxRange({"max_range"}, request.max_range);
 }
 
-void check(const CastRaysRequest& request, std::size_t max_queries) {
-  checkCommon(request);
+void check(const CastRaysRequest& request, const Limits& limits) {
+  checkCommon(request, limits);
   if (request.mode != CastRaysRequest::CLOSEST && request.mode != CastRaysRequest::ANY) {
     refuse({"mode"}, "is " + std::to_string(request.mode) + ": give CLOSEST (0) or ANY (1)");
   }
   const std::size_t rays = request.directions.size();
-  checkCount("rays", rays, max_queries);
+  checkCount("rays", rays, limits);
   checkLength("origins", request.origins.size(), rays, false);
   checkLength("max_ranges", request.max_ranges.size(), rays, true);
   for (std::size_t i = 0; i < rays; ++i) {
     checkDirection({"directions", i}, fromMessage(request.directions[i]));
   }
   for (std::size_t i = 0; i < request.origins.size(); ++i) {
-    checkFinite({"origins", i}, fromMessage(request.origins[i]));
+    checkPoint({"origins", i}, fromMessage(request.origins[i]), limits);
   }
   for (std::size_t i = 0; i < request.max_ranges.size(); ++i) {
     checkMaxRange({"max_ranges", i}, request.max_ranges[i]);

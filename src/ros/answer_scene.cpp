@@ -2,6 +2,7 @@
 #include "ros/answers.h"
 #include "ros/box_filter.h"
 #include "ros/named_boxes.h"
+#include "ros/request_checks.h"
 
 namespace box_query {
 namespace {
@@ -16,8 +17,9 @@ OrientedBox oriented(const AlignedBox& box) {
 
 }  // namespace
 
-void check(const GetSceneRequest& request) {
-  check(BoxFilter(request));
+void check(const GetSceneRequest& request, const Limits& limits) {
+  check(BoxFilter(request), limits);
+  checkTime({"scene_time"}, request.scene_time);
   if (request.scene_id != 0 && !request.scene_time.isZero()) {
     throw std::invalid_argument("scene_id and scene_time are both given: give one of them");
   }

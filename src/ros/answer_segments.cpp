@@ -184,15 +184,15 @@ class SegmentBatch {
 
 }  // namespace
 
-void check(const CheckSegmentRequest& request, std::size_t /*max_queries*/) {
-  checkCommon(request);
-  checkFinite({"start"}, fromMessage(request.start));
-  checkFinite({"end"}, fromMessage(request.end));
-  checkRadius({"radius"}, request.radius);
+void check(const CheckSegmentRequest& request, const Limits& limits) {
+  checkCommon(request, limits);
+  checkPoint({"start"}, fromMessage(request.start), limits);
+  checkPoint({"end"}, fromMessage(request.end), limits);
+  checkRadius({"radius"}, request.radius, limits);
 }
 
-void check(const CheckSegmentsRequest& request, std::size_t max_queries) {
-  checkCommon(request);
+void check(const CheckSegmentsRequest& request, const Limits& limits) {
+  checkCommon(request, limits);
   if (request.shape != CheckSegmentsRequest::PAIRS && request.shape != CheckSegmentsRequest::PATH) {
     refuse({"shape"}, "is " + std::to_string(request.shape) + ": give PAIRS (0) or PATH (1)");
   }
@@ -201,13 +201,13 @@ void check(const CheckSegmentsRequest& request, std::size_t max_queries) {
                            " elements: PAIRS needs a start and an end for every segment");
   }
   const std::size_t segments = segmentCount(request);
-  checkCount("segments", segments, max_queries);
+  checkCount("segments", segments, limits);
   checkLength("radii", request.radii.size(), segments, true);
   for (std::size_t i = 0; i < request.points.size(); ++i) {
-    checkFinite({"points", i}, fromMessage(request.points[i]));
+    checkPoint({"points", i}, fromMessage(request.points[i]), limits);
   }
   for (std::size_t i = 0; i < request.radii.size(); ++i) {
-    checkRadius({"radii", i}, request.radii[i]);
+    checkRadius({"radii", i}, request.radii[i], limits);
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "ros/conversions.h"
 #include "ros/drawing.h"
+#include "ros/limits.h"
 #include "ros/query_totals.h"
 
 #include <box_query/CastRay.h>
@@ -25,12 +26,12 @@ namespace box_query {
 
 /// Whether a request can be answered at all: everything but its frame.
 /// @throws std::invalid_argument with a sentence that says what to do, and which index is at fault.
-void check(const CastRayRequest& request, std::size_t max_queries);
-void check(const CastRaysRequest& request, std::size_t max_queries);
-void check(const CheckSegmentRequest& request, std::size_t max_queries);
-void check(const CheckSegmentsRequest& request, std::size_t max_queries);
-void check(const FindIntersectionsRequest& request, std::size_t max_queries);
-void check(const GetSceneRequest& request);
+void check(const CastRayRequest& request, const Limits& limits);
+void check(const CastRaysRequest& request, const Limits& limits);
+void check(const CheckSegmentRequest& request, const Limits& limits);
+void check(const CheckSegmentsRequest& request, const Limits& limits);
+void check(const FindIntersectionsRequest& request, const Limits& limits);
+void check(const GetSceneRequest& request, const Limits& limits);
 
 /// What a request is answered from.
 struct Context {

@@ -16,10 +16,9 @@
 namespace box_query {
 
 struct AnyBoxMessage {
-  explicit AnyBoxMessage(std::size_t max_boxes_per_message = 0)
-      : max_boxes(max_boxes_per_message) {}
+  explicit AnyBoxMessage(const Limits& given = Limits()) : limits(given) {}
 
-  std::size_t max_boxes;
+  Limits limits;
   /// The header of the connection that it came through.
   boost::shared_ptr<const std::map<std::string, std::string>> connection;
   const BoxSource* source = nullptr;  ///< null: its type is not understood, decoded.problem says so
@@ -78,7 +77,7 @@ struct Serializer<box_query::AnyBoxMessage> {
   static void read(Stream& stream, box_query::AnyBoxMessage& message) {
     if (message.source) {
       message.decoded = box_query::decodeMessage(*message.source, stream.getData(),
-                                                 stream.getLength(), message.max_boxes);
+                                                 stream.getLength(), message.limits);
     }
   }
 };

@@ -60,7 +60,7 @@ void readObject(WireReader& reader, const WireHeader& array, WholeSet& set,
                 DecodedMessage& message) {
   const WireHeader own = reader.header();
   const std::int64_t id = reader.number<std::uint32_t>();
-  const std::string_view label = reader.string();
+  const std::string_view label = reader.name("label");
   reader.skip(5 * sizeof(float));  // score, color
   const bool valid = reader.number<std::uint8_t>() != 0;
   reader.string();  // space_frame
@@ -89,13 +89,13 @@ void readObject(WireReader& reader, const WireHeader& array, WholeSet& set,
 
 }  // namespace
 
-void decodeAutowareDetectedObjectArray(WireReader& reader, std::size_t max_boxes,
+void decodeAutowareDetectedObjectArray(WireReader& reader, const Limits& limits,
                                        DecodedMessage& message) {
   const WireHeader array = reader.header();
   const auto read = [&](WholeSet& set, std::uint32_t /*n*/) {
     readObject(reader, array, set, message);
   };
-  WholeSet::decode(reader, kObjectSize, max_boxes, array.stamp, message, read);
+  WholeSet::decode(reader, kObjectSize, limits, array.stamp, message, read);
 }
 
 }  // namespace box_query

@@ -28,10 +28,38 @@ std::string resolved(const std::string& topic) {
   return ros::names::validate(topic, error) ? ros::names::resolve(topic) : topic;
 }
 
-void setRange(const IndexRange& range, bool look, BoxMask& mask) {
-  for (std::size_t i = range.begin; i < range.end; ++i) {
-    mask.set(i, look);
+/// Each box once, however often the ranges name it.
+void setRanges(std::vector<IndexRange>&& ranges, bool look, BoxMask& mask) {
+  std::sort(ranges.begin(), ranges.end(),
+            [](const IndexRange& a, const IndexRange& b) { return a.begin < b.begin; });
+  std::size_t next = 0;
+  for (const IndexRange& range : ranges) {
+    for (next = std::max(next, range.begin); next < range.end; ++next) {
+      mask.set(next, look);
+    }
   }
+}
+
+/// A hash table would take several times as long for many names.
+std::vector<std::string_view> sorted(const Strings& names) {
+  std::vector<std::string_view> views(names.begin(), names.end());
+  std::sort(views.begin(), views.end());
+  return views;
+}
+
+/// The topics of the snapshot that are chosen, each once.
+Strings chosenTopics(const BoxFilter& filter, const Strings& topics) {
+  if (filter.topics.empty()) {
+    return topics;
+  }
+  std::set<std::string> wanted;
+  for (const std::string& topic : filter.topics) {
+    wanted.insert(resolved(topic));
+  }
+  Strings chosen;
+  std::copy_if(topics.begin(), topics.end(), std::back_inserter(chosen),
+               [&wanted](const std::string& topic) { return wanted.count(topic) > 0; });
+  return chosen;
 }
 
 /// Of the chosen topics and namespaces.
@@ -40,28 +68,17 @@ BoxMask chosen(const BoxFilter& filter, const Names& names, const Strings& topic
     return BoxMask(names.size());
   }
   BoxMask mask(names.size(), false);
-  const auto choose = [&](const std::string& topic) {
+  std::vector<IndexRange> ranges;
+  for (const std::string& topic : chosenTopics(filter, topics)) {
     if (filter.namespaces.empty()) {
-      setRange(rangeOf(names, {topic}), true, mask);
+      ranges.push_back(rangeOf(names, {topic}));
     }
     for (const std::string& ns : filter.namespaces) {
-      setRange(rangeOf(names, {topic, &ns}), true, mask);
+      ranges.push_back(rangeOf(names, {topic, &ns}));
     }
-  };
-  if (filter.topics.empty()) {
-    std::for_each(topics.begin(), topics.end(), choose);
   }
-  for (const std::string& topic : filter.topics) {
-    choose(resolved(topic));
-  }
+  setRanges(std::move(ranges), true, mask);
   return mask;
-}
-
-/// A hash table would take several times as long for many names.
-std::vector<std::string_view> sorted(const Strings& names) {
-  std::vector<std::string_view> views(names.begin(), names.end());
-  std::sort(views.begin(), views.end());
-  return views;
 }
 
 void dropOtherLabels(const Strings& labels, const Names& names, BoxMask& mask) {
@@ -211,9 +228,37 @@ std::string unknownIgnored(const BoxFilter& filter, const Names& names, const St
   return "There is no box to ignore of " + name + ".";
 }
 
+void checkCount(const char* array, std::size_t count, const Limits& limits) {
+  if (count > limits.names) {
+    throw std::invalid_argument(std::string(array) + " has " + std::to_string(count) +
+                                " elements, at most " + std::to_string(limits.names) +
+                                " are taken: split the request, or raise ~max_filter_names");
+  }
+}
+
+void checkNames(const char* array, const Strings& names, const Limits& limits) {
+  checkCount(array, names.size(), limits);
+  const auto found = std::find_if(names.begin(), names.end(), [&limits](const std::string& name) {
+    return name.size() > limits.name_length;
+  });
+  if (found != names.end()) {
+    throw std::invalid_argument(std::string(array) + "[" + std::to_string(found - names.begin()) +
+                                "] has " + std::to_string(found->size()) +
+                                " bytes: no name has "
+                                "more than ~max_name_length, " +
+                                std::to_string(limits.name_length));
+  }
+}
+
 }  // namespace
 
-void check(const BoxFilter& filter) {
+void check(const BoxFilter& filter, const Limits& limits) {
+  checkNames("topics", filter.topics, limits);
+  checkNames("namespaces", filter.namespaces, limits);
+  checkNames("labels", filter.labels, limits);
+  checkNames("ignore_topics", filter.ignore_topics, limits);
+  checkNames("ignore_namespaces", filter.ignore_namespaces, limits);
+  checkCount("ignore_ids", filter.ignore_ids.size(), limits);
   const std::size_t topics = filter.ignore_topics.size();
   const std::size_t namespaces = filter.ignore_namespaces.size();
   const std::size_t ids = filter.ignore_ids.size();
@@ -237,10 +282,12 @@ std::optional<BoxMask> maskOf(const BoxFilter& filter, const Snapshot& snapshot)
   if (!filter.labels.empty()) {
     dropOtherLabels(filter.labels, snapshot.names, mask);
   }
+  std::vector<IndexRange> ignored;
   for (std::size_t i = 0; i < filter.ignored(); ++i) {
     visitIgnored(filter, i, snapshot.names, topics,
-                 [&mask](const IndexRange& range) { setRange(range, false, mask); });
+                 [&ignored](const IndexRange& range) { ignored.push_back(range); });
   }
+  setRanges(std::move(ignored), false, mask);
   return mask;
 }
 

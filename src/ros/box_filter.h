@@ -3,6 +3,8 @@
 /// Which boxes a request looks at.
 #pragma once
 
+#include "ros/limits.h"
+
 #include <box_query/ros/scene_monitor.h>
 
 #include <algorithm>
@@ -39,8 +41,9 @@ struct BoxFilter {
   const std::vector<std::int64_t>& ignore_ids;
 };
 
-/// @throws std::invalid_argument if the arrays of ignored boxes do not fit together.
-void check(const BoxFilter& filter);
+/// @throws std::invalid_argument if the arrays of ignored boxes do not fit together, or a name is
+/// longer than that of any box.
+void check(const BoxFilter& filter, const Limits& limits);
 
 /// The boxes of the snapshot that pass, or nothing where nothing is filtered. Names that no box has
 /// are no error.

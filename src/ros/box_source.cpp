@@ -23,7 +23,8 @@ const std::array<const char*, kRejections>& rejectionNames() {
       "an orientation that is no unit quaternion",
       "an empty or malformed frame",
       "an unknown action",
-      "a shape without three sides"};
+      "a shape without three sides",
+      "a position or size out of bounds"};
   return names;
 }
 
@@ -54,7 +55,13 @@ void BoxChange::addHostile(std::int64_t box_id, const Vector3& center,
   } else if (!isNearUnit(orientation)) {
     reject(Rejection::kOrientation, 1, "its norm is " + print(orientation.norm()), box_id);
   } else {
-    boxes.emplace_back(box_id, center, orientation, 0.5 * size);
+    const bool is_far = isWithin(max_coordinate, size);
+    const Vector3& outside = is_far ? center : size;
+    reject(Rejection::kOutOfBounds, 1,
+           std::string(is_far ? "its position" : "its size") + " is (" + print(outside.x()) + ", " +
+               print(outside.y()) + ", " + print(outside.z()) + ") m; " +
+               allowedCoordinates(max_coordinate),
+           box_id);
   }
 }
 
@@ -96,10 +103,10 @@ const BoxSource* findSource(std::string_view type, std::string_view md5, std::st
 }
 
 DecodedMessage decodeMessage(const BoxSource& source, const std::uint8_t* data, std::size_t size,
-                             std::size_t max_boxes) {
-  WireReader reader(data, size);
+                             const Limits& limits) {
+  WireReader reader(data, size, limits.name_length);
   DecodedMessage message;
-  source.decode(reader, max_boxes, message);
+  source.decode(reader, limits, message);
   if (!reader.ok()) {
     message.problem = reader.failure();
   } else if (message.problem.empty() && reader.left() > 0) {

@@ -3,6 +3,7 @@
 /// What a message type of boxes is to the monitor: a name, a checksum and a decoder.
 #pragma once
 
+#include "ros/limits.h"
 #include "ros/wire_reader.h"
 
 #include <box_query/geometry.h>
@@ -21,8 +22,16 @@
 namespace box_query {
 
 /// Why a box is rejected.
-enum class Rejection { kNotFinite, kNegativeSize, kOrientation, kFrame, kAction, kShape };
-constexpr std::size_t kRejections = 6;
+enum class Rejection {
+  kNotFinite,
+  kNegativeSize,
+  kOrientation,
+  kFrame,
+  kAction,
+  kShape,
+  kOutOfBounds
+};
+constexpr std::size_t kRejections = 7;
 /// A few words each, in the order of the enumeration.
 const std::array<const char*, kRejections>& rejectionNames();
 
@@ -60,9 +69,11 @@ struct BoxChange {
     kClear,   ///< nothing under any (ns, id) of the topic
   };
 
-  // Not defaulted: value-initialisation would fill the whole of it with zeros first.
-  BoxChange() {}  // NOLINT(modernize-use-equals-default)
+  // Not an aggregate: value-initialisation would fill the whole of it with zeros first.
+  explicit BoxChange(double largest = std::numeric_limits<double>::max())
+      : max_coordinate(largest) {}
 
+  double max_coordinate;  ///< [m] of its boxes: Limits::coordinate
   Kind kind = Kind::kSet;
   bool whole_namespace = false;  ///< kSet, kRemove: and nothing under another id of its ns
   std::string ns;
@@ -81,12 +92,12 @@ struct BoxChange {
   /// Counts `boxes` bad ones, the first of which is `box_id`.
   void reject(Rejection why, std::size_t boxes, const std::string& detail, std::int64_t box_id);
   /// The only door for boxes: checks one, halves its `size` (full sides [m]) and appends it, or
-  /// rejects it. A half is exact, but for sides below 2^-1021 m, where it is rounded to nearest.
+  /// rejects it. A half is exact.
   void add(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
            const Vector3& size);
 
  private:
-  /// The same for a box that is bad, or close to the largest double.
+  /// The same for a box that is bad.
   void addHostile(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
                   const Vector3& size);
 };
@@ -103,11 +114,8 @@ struct DecodedMessage {
 
 inline void BoxChange::add(std::int64_t box_id, const Vector3& center,
                            const Quaternion& orientation, const Vector3& size) {
-  // Most boxes are good. A sum is finite only if everything in it is; one that overflows decides
-  // nothing.
-  const double sum = center.lpNorm<1>() + size.lpNorm<1>();
-  if (sum <= std::numeric_limits<double>::max() && size.x() >= 0.0 && size.y() >= 0.0 &&
-      size.z() >= 0.0 && isNearUnit(orientation)) {
+  if (isWithin(max_coordinate, center) && isWithin(max_coordinate, size) && size.x() >= 0.0 &&
+      size.y() >= 0.0 && size.z() >= 0.0 && isNearUnit(orientation)) {
     boxes.emplace_back(box_id, center, orientation, 0.5 * size);
   } else {
     addHostile(box_id, center, orientation, size);
@@ -117,9 +125,9 @@ inline void BoxChange::add(std::int64_t box_id, const Vector3& center,
 struct BoxSource {
   const char* type;
   const char* md5;
-  /// Appends to `message` what the bytes say; more than `max_boxes` boxes are a problem. A failure
-  /// of the reader is handled by the caller, as are bytes that are left over.
-  void (*decode)(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
+  /// Appends to `message` what the bytes say; more than `limits.boxes` boxes are a problem. A
+  /// failure of the reader is handled by the caller, as are bytes that are left over.
+  void (*decode)(WireReader& reader, const Limits& limits, DecodedMessage& message);
 };
 
 /// Every message type that is understood. A new one is a file of its own and its line here.
@@ -130,7 +138,7 @@ const BoxSource* findSource(std::string_view type, std::string_view md5, std::st
 
 /// Decodes a whole message; never throws at bad bytes.
 DecodedMessage decodeMessage(const BoxSource& source, const std::uint8_t* data, std::size_t size,
-                             std::size_t max_boxes);
+                             const Limits& limits);
 
 /// A frame as tf2 wants it: publishers of the days of tf1 lead with a slash, which tf2 refuses.
 /// The result is a view into `frame`.
@@ -142,17 +150,17 @@ bool isBadFrame(std::string_view frame);
 std::string tooManyBoxes(std::size_t max_boxes);
 
 // The decoders, each in its own file.
-void decodeMarker(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
-void decodeMarkerArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
-void decodeAutowareDetectedObjectArray(WireReader& reader, std::size_t max_boxes,
+void decodeMarker(WireReader& reader, const Limits& limits, DecodedMessage& message);
+void decodeMarkerArray(WireReader& reader, const Limits& limits, DecodedMessage& message);
+void decodeAutowareDetectedObjectArray(WireReader& reader, const Limits& limits,
                                        DecodedMessage& message);
-void decodeCollisionObject(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
-void decodeDerivedObjectArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
-void decodePlanningScene(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
-void decodeJskBoundingBoxArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
-void decodeVisionBoundingBox3DArray(WireReader& reader, std::size_t max_boxes,
+void decodeCollisionObject(WireReader& reader, const Limits& limits, DecodedMessage& message);
+void decodeDerivedObjectArray(WireReader& reader, const Limits& limits, DecodedMessage& message);
+void decodePlanningScene(WireReader& reader, const Limits& limits, DecodedMessage& message);
+void decodeJskBoundingBoxArray(WireReader& reader, const Limits& limits, DecodedMessage& message);
+void decodeVisionBoundingBox3DArray(WireReader& reader, const Limits& limits,
                                     DecodedMessage& message);
-void decodeVisionDetection3DArray(WireReader& reader, std::size_t max_boxes,
+void decodeVisionDetection3DArray(WireReader& reader, const Limits& limits,
                                   DecodedMessage& message);
 
 }  // namespace box_query

@@ -15,7 +15,7 @@ namespace box_query {
 
 BoxTopics::BoxTopics(const ros::NodeHandle& nh, const Parameters& parameters, Receive receive)
     : nh_(nh),
-      max_boxes_(static_cast<std::size_t>(parameters.max_boxes_per_message)),
+      limits_(parameters),
       receive_(std::move(receive)),
       topics_(parameters.box_topics.size()),
       spinner_(1, &queue_) {
@@ -45,7 +45,7 @@ void BoxTopics::subscribe(std::size_t topic) {
   ros::SubscribeOptions options;
   options.initByFullCallbackType<const boost::shared_ptr<AnyBoxMessage>&>(
       topics_[topic].name, kUnbounded, callback,
-      [max_boxes = max_boxes_] { return boost::make_shared<AnyBoxMessage>(max_boxes); });
+      [limits = limits_] { return boost::make_shared<AnyBoxMessage>(limits); });
   options.callback_queue = &queue_;
   options.transport_hints = ros::TransportHints().tcpNoDelay();
   topics_[topic].subscriber = nh_.subscribe(options);

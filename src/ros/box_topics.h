@@ -49,7 +49,7 @@ class BoxTopics {
   void subscribe(std::size_t topic);
 
   ros::NodeHandle nh_;
-  const std::size_t max_boxes_;
+  const Limits limits_;
   const Receive receive_;
   ros::CallbackQueue queue_;
   std::vector<Topic> topics_;

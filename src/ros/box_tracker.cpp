@@ -205,11 +205,11 @@ void BoxTracker::placeAt(const FramePose& pose, Word&& word) {
     store_.place(std::move(word), frame);
     return;
   }
-  bool finite = true;
+  bool near = true;
   for (IdentifiedBox& box : word.change.boxes) {
-    finite = moveBox(pose, box.box) && finite;
+    near = moveBox(pose, parameters_.max_coordinate, box.box) && near;
   }
-  if (!finite) {
+  if (!near) {
     rejectLostBoxes(word);
   }
   if (!word.change.boxes.empty()) {
@@ -219,14 +219,16 @@ void BoxTracker::placeAt(const FramePose& pose, Word&& word) {
 
 void BoxTracker::rejectLostBoxes(Word& word) {
   IdentifiedBoxes& boxes = word.change.boxes;
-  const auto is_lost = [](const IdentifiedBox& box) { return !box.box.center.allFinite(); };
+  const auto is_lost = [this](const IdentifiedBox& box) {
+    return !isNear(parameters_.max_coordinate, box.box.center);
+  };
   const auto count = static_cast<std::size_t>(std::count_if(boxes.begin(), boxes.end(), is_lost));
   const std::int64_t first = std::find_if(boxes.begin(), boxes.end(), is_lost)->id;
   counts_.rejected_boxes += count;
-  counts_.rejections[rejectionNames()[static_cast<std::size_t>(Rejection::kNotFinite)]] += count;
+  counts_.rejections[rejectionNames()[static_cast<std::size_t>(Rejection::kOutOfBounds)]] += count;
   store_.reject(word, count,
-                nameOf(word.change, first) + " is too far away for double numbers in frame '" +
-                    parameters_.fixed_frame + "'");
+                nameOf(word.change, first) + " is too far away in frame '" +
+                    parameters_.fixed_frame + "': correct its transform, or raise ~max_coordinate");
   boxes.erase(std::remove_if(boxes.begin(), boxes.end(), is_lost), boxes.end());
 }
 

@@ -72,7 +72,7 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
       if (!row.item->locked_frame.empty()) {
         used_frames_.insert(row.item->locked_frame);
         const std::optional<FramePose>& known = locked_[row.item->locked_frame];
-        if (!known || !moveBox(*known, box)) {
+        if (!known || !moveBox(*known, parameters_.max_coordinate, box)) {
           lost_frame = row.item->locked_frame;
           ++state.waiting;
           continue;

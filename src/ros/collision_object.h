@@ -6,6 +6,6 @@
 namespace box_query {
 
 /// Reads a moveit_msgs/CollisionObject and appends what it says to the changes; as a decoder does.
-void readCollisionObject(WireReader& reader, std::size_t max_boxes, DecodedMessage& message);
+void readCollisionObject(WireReader& reader, const Limits& limits, DecodedMessage& message);
 
 }  // namespace box_query

@@ -57,15 +57,15 @@ struct Fields {
 
 /// Reads the primitives and their poses. The boxes among them come before their poses: a second
 /// reader goes along.
-void readPrimitives(WireReader& reader, std::size_t max_boxes, Fields& fields, BoxChange& change,
+void readPrimitives(WireReader& reader, const Limits& limits, Fields& fields, BoxChange& change,
                     DecodedMessage& message) {
   fields.primitives = reader.count(SolidPrimitive::kSmallest);
   WireReader solids = reader;
   for (std::uint32_t n = 0; n < fields.primitives && reader.ok(); ++n) {
     readSolidPrimitive(reader);
   }
-  if (fields.primitives > max_boxes) {
-    message.problem = tooManyBoxes(max_boxes);
+  if (fields.primitives > limits.boxes) {
+    message.problem = tooManyBoxes(limits.boxes);
     return;
   }
   fields.object->boxes.reserve(fields.primitives);
@@ -147,7 +147,7 @@ void add(Fields&& fields, BoxChange& change) {
 
 /// Its own shapes mean nothing.
 void move(Fields&& fields, BoxChange& change) {
-  BoxChange move;
+  BoxChange move(change.max_coordinate);
   move.kind = BoxChange::Kind::kMove;
   move.ns = change.ns;
   move.frame = change.frame;
@@ -201,22 +201,22 @@ void apply(std::int8_t operation, Fields&& fields, BoxChange& change) {
 
 }  // namespace
 
-void decodeCollisionObject(WireReader& reader, std::size_t max_boxes, DecodedMessage& message) {
-  readCollisionObject(reader, max_boxes, message);
+void decodeCollisionObject(WireReader& reader, const Limits& limits, DecodedMessage& message) {
+  readCollisionObject(reader, limits, message);
 }
 
-void readCollisionObject(WireReader& reader, std::size_t max_boxes, DecodedMessage& message) {
-  BoxChange& change = message.changes.emplace_back();
+void readCollisionObject(WireReader& reader, const Limits& limits, DecodedMessage& message) {
+  BoxChange& change = message.changes.emplace_back(limits.coordinate);
   change.whole_namespace = true;
   const WireHeader header = reader.header();
   change.stamp = header.stamp;
   change.frame = stripSlash(header.frame);
   Fields fields;
   fields.pose = readPose(reader);
-  change.ns = reader.string();
-  change.label = reader.string();  // type.key
-  reader.string();                 // type.db
-  readPrimitives(reader, max_boxes, fields, change, message);
+  change.ns = reader.name("id");
+  change.label = reader.name("type.key");
+  reader.string();  // type.db
+  readPrimitives(reader, limits, fields, change, message);
   if (!message.problem.empty()) {
     return;
   }

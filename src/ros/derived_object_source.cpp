@@ -53,12 +53,12 @@ void readObject(WireReader& reader, const WireHeader& array, WholeSet& set,
 
 }  // namespace
 
-void decodeDerivedObjectArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message) {
+void decodeDerivedObjectArray(WireReader& reader, const Limits& limits, DecodedMessage& message) {
   const WireHeader array = reader.header();
   const auto read = [&](WholeSet& set, std::uint32_t /*n*/) {
     readObject(reader, array, set, message);
   };
-  WholeSet::decode(reader, kObjectSize, max_boxes, array.stamp, message, read);
+  WholeSet::decode(reader, kObjectSize, limits, array.stamp, message, read);
 }
 
 }  // namespace box_query

@@ -33,7 +33,7 @@ class NumberText {
 
 }  // namespace
 
-void decodeJskBoundingBoxArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message) {
+void decodeJskBoundingBoxArray(WireReader& reader, const Limits& limits, DecodedMessage& message) {
   const WireHeader array = reader.header();
   NumberText label;
   const auto read = [&](WholeSet& set, std::uint32_t n) {
@@ -43,7 +43,7 @@ void decodeJskBoundingBoxArray(WireReader& reader, std::size_t max_boxes, Decode
     const auto number = reader.number<std::uint32_t>();
     set.add(header, label.of(number), n, box.center, box.orientation, box.size);
   };
-  WholeSet::decode(reader, kBoxSize, max_boxes, array.stamp, message, read);
+  WholeSet::decode(reader, kBoxSize, limits, array.stamp, message, read);
 }
 
 }  // namespace box_query

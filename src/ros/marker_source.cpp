@@ -48,13 +48,13 @@ void addPoints(WireReader& reader, std::uint32_t points, const WireBox& shape, B
 }
 
 /// Appends one marker. `boxes` counts those of the message so far.
-void readMarker(WireReader& reader, std::size_t max_boxes, std::size_t& boxes,
+void readMarker(WireReader& reader, const Limits& limits, std::size_t& boxes,
                 DecodedMessage& message) {
-  BoxChange& change = message.changes.emplace_back();
+  BoxChange& change = message.changes.emplace_back(limits.coordinate);
   const WireHeader header = reader.header();
   change.stamp = header.stamp;
   change.frame = stripSlash(header.frame);
-  change.ns = reader.string();
+  change.ns = reader.name("namespace");
   change.id = reader.number<std::int32_t>();
   const auto type = reader.number<std::int32_t>();
   const auto action = reader.number<std::int32_t>();
@@ -68,8 +68,8 @@ void readMarker(WireReader& reader, std::size_t max_boxes, std::size_t& boxes,
   const bool adds = action == Marker::ADD && (type == Marker::CUBE || type == Marker::CUBE_LIST);
   if (adds) {
     boxes += type == Marker::CUBE ? 1 : points;
-    if (boxes > max_boxes) {
-      message.problem = tooManyBoxes(max_boxes);
+    if (boxes > limits.boxes) {
+      message.problem = tooManyBoxes(limits.boxes);
       return;
     }
   }
@@ -82,9 +82,9 @@ void readMarker(WireReader& reader, std::size_t max_boxes, std::size_t& boxes,
     change.add(change.id, shape.center, shape.orientation, shape.size);
   }
   reader.skip(std::uint64_t{reader.count(kColorSize)} * kColorSize);
-  change.label = reader.string();  // text
-  reader.string();                 // mesh_resource
-  reader.skip(1);                  // mesh_use_embedded_materials
+  change.label = adds ? reader.name("text") : reader.string();
+  reader.string();  // mesh_resource
+  reader.skip(1);   // mesh_use_embedded_materials
 
   if (adds && isBadFrame(change.frame)) {
     const std::size_t good = change.boxes.size();
@@ -104,17 +104,17 @@ void readMarker(WireReader& reader, std::size_t max_boxes, std::size_t& boxes,
 
 }  // namespace
 
-void decodeMarker(WireReader& reader, std::size_t max_boxes, DecodedMessage& message) {
+void decodeMarker(WireReader& reader, const Limits& limits, DecodedMessage& message) {
   std::size_t boxes = 0;
-  readMarker(reader, max_boxes, boxes, message);
+  readMarker(reader, limits, boxes, message);
 }
 
-void decodeMarkerArray(WireReader& reader, std::size_t max_boxes, DecodedMessage& message) {
+void decodeMarkerArray(WireReader& reader, const Limits& limits, DecodedMessage& message) {
   const std::uint32_t markers = reader.count(kMarkerSize);
   message.changes.reserve(markers);
   std::size_t boxes = 0;
   for (std::uint32_t n = 0; n < markers && reader.ok() && message.problem.empty(); ++n) {
-    readMarker(reader, max_boxes, boxes, message);
+    readMarker(reader, limits, boxes, message);
   }
 }
 

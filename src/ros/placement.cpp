@@ -32,10 +32,10 @@ std::string missingPose(const tf2::BufferCore& tf, const std::string& fixed_fram
   return error;
 }
 
-bool moveBox(const FramePose& pose, OrientedBox& box) {
+bool moveBox(const FramePose& pose, double max_coordinate, OrientedBox& box) {
   box.center = (pose.rotation * box.center + pose.translation).eval();
   box.orientation = pose.quaternion * box.orientation;
-  return box.center.allFinite();
+  return isNear(max_coordinate, box.center);
 }
 
 std::string describe(const WaitingList::Place& place, const std::string& fixed_frame) {

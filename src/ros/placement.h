@@ -39,8 +39,8 @@ std::optional<FramePose> findPose(const tf2::BufferCore& tf, const std::string& 
 std::string missingPose(const tf2::BufferCore& tf, const std::string& fixed_frame,
                         const std::string& frame, const ros::Time& stamp);
 
-/// Moves a box. A translation may overflow: @return false if the result is not finite.
-bool moveBox(const FramePose& pose, OrientedBox& box);
+/// Moves a box. @return false if it is not near then: a translation may even overflow
+bool moveBox(const FramePose& pose, double max_coordinate, OrientedBox& box);
 
 /// Words whose transform is not there yet, kept by what they wait for, so that tf is asked once for
 /// all boxes of a frame and stamp. Bounded by the number of boxes. Not thread safe.

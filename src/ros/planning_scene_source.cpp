@@ -98,10 +98,10 @@ BoxChange left(const BoxChange& attached) {
   return change;
 }
 
-void readAttachedObject(WireReader& reader, std::size_t max_boxes, DecodedMessage& message) {
+void readAttachedObject(WireReader& reader, const Limits& limits, DecodedMessage& message) {
   reader.string();  // link_name
   DecodedMessage attached;
-  readCollisionObject(reader, max_boxes, attached);
+  readCollisionObject(reader, limits, attached);
   skipStrings(reader);  // touch_links
   skipJointTrajectory(reader);
   reader.skip(sizeof(double));  // weight
@@ -126,26 +126,28 @@ std::size_t readOctomap(WireReader& reader) {
 
 /// An array of objects, each of which `read` makes one change of.
 template <class Read>
-void readObjects(WireReader& reader, std::size_t smallest, std::size_t max_boxes, Read read,
+void readObjects(WireReader& reader, std::size_t smallest, const Limits& limits, Read read,
                  DecodedMessage& message) {
   const std::uint32_t objects = reader.count(smallest);
   std::size_t boxes = 0;
   for (std::uint32_t n = 0; n < objects && reader.ok() && message.problem.empty(); ++n) {
-    read(reader, max_boxes - boxes, message);
+    Limits rest = limits;
+    rest.boxes -= boxes;
+    read(reader, rest, message);
     boxes += message.changes.back().boxes.size();
     if (!message.problem.empty()) {
-      message.problem = tooManyBoxes(max_boxes);
+      message.problem = tooManyBoxes(limits.boxes);
     }
   }
 }
 
 }  // namespace
 
-void decodePlanningScene(WireReader& reader, std::size_t max_boxes, DecodedMessage& message) {
+void decodePlanningScene(WireReader& reader, const Limits& limits, DecodedMessage& message) {
   reader.string();  // name
   skipJointState(reader);
   skipMultiDofJointState(reader);
-  readObjects(reader, kString + kObject, max_boxes, readAttachedObject, message);
+  readObjects(reader, kString + kObject, limits, readAttachedObject, message);
   reader.skip(1);   // robot_state.is_diff
   reader.string();  // robot_model_name
   skipTransforms(reader);
@@ -153,7 +155,7 @@ void decodePlanningScene(WireReader& reader, std::size_t max_boxes, DecodedMessa
   skipNamed(reader, sizeof(double));  // link_padding
   skipNamed(reader, sizeof(double));  // link_scale
   skipNamed(reader, kColor);          // object_colors
-  readObjects(reader, kObject, max_boxes, readCollisionObject, message);
+  readObjects(reader, kObject, limits, readCollisionObject, message);
   if (!message.problem.empty()) {
     return;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/request_checks.h"
 
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -20,6 +21,12 @@ std::string print(const Vector3& v) {
   return "(" + print(v.x()) + ", " + print(v.y()) + ", " + print(v.z()) + ")";
 }
 
+void checkFinite(const Field& field, const Vector3& vector) {
+  if (!vector.allFinite()) {
+    refuse(field, "is " + print(vector) + ": give finite numbers");
+  }
+}
+
 }  // namespace
 
 std::string Field::text() const {
@@ -30,19 +37,34 @@ void refuse(const Field& field, const std::string& why) {
   throw std::invalid_argument(field.text() + " " + why);
 }
 
-void refuseVector(const Field& field, const Vector3& vector) {
-  if (vector.allFinite()) {
+void refusePoint(const Field& field, const Vector3& point, const Limits& limits) {
+  checkFinite(field, point);
+  refuse(field, "is " + print(point) + ": " + allowedCoordinates(limits.coordinate));
+}
+
+void refuseDirection(const Field& field, const Vector3& direction) {
+  checkFinite(field, direction);
+  if (direction.isZero(0)) {
     refuse(field, "is zero: give a direction of any other length");
   }
-  refuse(field, "is " + print(vector) + ": give finite numbers");
+  refuse(field, "is " + print(direction) + ": give 0 for what is less than " +
+                    print(kSmallestSlope) + " times its longest component");
 }
 
 void refuseMaxRange(const Field& field, double max_range) {
   refuse(field, "is " + print(max_range) + ": give metres >= 0; 0 or +Inf is unlimited");
 }
 
-void refuseRadius(const Field& field, double radius) {
-  refuse(field, "is " + print(radius) + ": give finite metres >= 0");
+void refuseRadius(const Field& field, double radius, const Limits& limits) {
+  refuse(field, "is " + print(radius) + ": " +
+                    (radius >= 0 && std::isfinite(radius) ? allowedCoordinates(limits.coordinate)
+                                                          : "give finite metres >= 0"));
+}
+
+void checkTime(const Field& field, const ros::Time& time) {
+  if (time.nsec >= 1000000000U) {
+    refuse(field, "has " + std::to_string(time.nsec) + " nanoseconds: give less than a second");
+  }
 }
 
 void checkLength(const char* name, std::size_t length, std::size_t queries, bool may_be_empty) {
@@ -54,10 +76,10 @@ void checkLength(const char* name, std::size_t length, std::size_t queries, bool
              (may_be_empty ? ", a single one for all, or none" : ", or a single one for all"));
 }
 
-void checkCount(const char* what, std::size_t count, std::size_t max_queries) {
-  if (count > max_queries) {
+void checkCount(const char* what, std::size_t count, const Limits& limits) {
+  if (count > limits.queries) {
     throw std::invalid_argument("the request has " + std::to_string(count) + " " + what +
-                                ", at most " + std::to_string(max_queries) +
+                                ", at most " + std::to_string(limits.queries) +
                                 " are taken: split it, or raise ~max_queries_per_call");
   }
 }
@@ -68,10 +90,23 @@ void checkRunning(const std::atomic<bool>* stopping) {
   }
 }
 
-void checkHeader(const std_msgs::Header& header) {
+void checkFrame(const std::string& frame, const Vector3& origin, const Limits& limits) {
+  if (!isNear(limits.coordinate, origin)) {
+    throw std::runtime_error("frame '" + frame + "' is at " + print(origin) +
+                             ", too far away: correct its transform, or raise ~max_coordinate");
+  }
+}
+
+void checkHeader(const std_msgs::Header& header, const Limits& limits) {
   if (header.frame_id.empty()) {
     throw std::invalid_argument(
         "header.frame_id is empty: name the frame in which the geometry is given");
+  }
+  checkTime({"header.stamp"}, header.stamp);
+  if (header.frame_id.size() > limits.name_length) {
+    throw std::invalid_argument("header.frame_id has " + std::to_string(header.frame_id.size()) +
+                                " bytes: no name has more than ~max_name_length, " +
+                                std::to_string(limits.name_length));
   }
 }
 

@@ -4,15 +4,16 @@
 #pragma once
 
 #include "ros/box_filter.h"
+#include "ros/limits.h"
 
 #include <box_query/geometry.h>
 
 #include <atomic>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string>
 
+#include <ros/time.h>
 #include <std_msgs/Header.h>
 
 namespace box_query {
@@ -29,19 +30,20 @@ struct Field {
 
 [[noreturn]] void refuse(const Field& field, const std::string& why);
 
-[[noreturn]] void refuseVector(const Field& field, const Vector3& vector);
+[[noreturn]] void refusePoint(const Field& field, const Vector3& point, const Limits& limits);
+[[noreturn]] void refuseDirection(const Field& field, const Vector3& direction);
 [[noreturn]] void refuseMaxRange(const Field& field, double max_range);
-[[noreturn]] void refuseRadius(const Field& field, double radius);
+[[noreturn]] void refuseRadius(const Field& field, double radius, const Limits& limits);
 
 // Inline, since a batch has thousands of each.
-inline void checkFinite(const Field& field, const Vector3& vector) {
-  if (!vector.allFinite()) {
-    refuseVector(field, vector);
+inline void checkPoint(const Field& field, const Vector3& point, const Limits& limits) {
+  if (!isWithin(limits.coordinate, point)) {
+    refusePoint(field, point, limits);
   }
 }
 inline void checkDirection(const Field& field, const Vector3& direction) {
-  if (!direction.allFinite() || direction.isZero(0)) {
-    refuseVector(field, direction);
+  if (!isDirection(direction)) {
+    refuseDirection(field, direction);
   }
 }
 /// 0 and +inf are unlimited.
@@ -50,25 +52,32 @@ inline void checkMaxRange(const Field& field, double max_range) {
     refuseMaxRange(field, max_range);
   }
 }
-inline void checkRadius(const Field& field, double radius) {
-  if (!(radius >= 0) || std::isinf(radius)) {
-    refuseRadius(field, radius);
+inline void checkRadius(const Field& field, double radius, const Limits& limits) {
+  if (!(radius >= 0) || !isWithin(limits.coordinate, radius)) {
+    refuseRadius(field, radius, limits);
   }
 }
+/// Of ROS: fewer nanoseconds than a second has.
+void checkTime(const Field& field, const ros::Time& time);
 /// An array of one element a query, or a single one for all, or, if `may_be_empty`, none.
 void checkLength(const char* name, std::size_t length, std::size_t queries, bool may_be_empty);
-void checkCount(const char* what, std::size_t count, std::size_t max_queries);
+void checkCount(const char* what, std::size_t count, const Limits& limits);
 
 /// @throws std::runtime_error if the node shuts down, or the server that sets `stopping` does:
 /// nobody would read the rest of a batch.
 void checkRunning(const std::atomic<bool>* stopping);
 
+/// The origin of the request's frame, in the fixed frame.
+/// @throws std::runtime_error if it is out of bounds
+void checkFrame(const std::string& frame, const Vector3& origin, const Limits& limits);
+
 /// What all requests share.
-void checkHeader(const std_msgs::Header& header);
+void checkHeader(const std_msgs::Header& header, const Limits& limits);
 template <class Request>
-void checkCommon(const Request& request) {
-  checkHeader(request.header);
-  check(BoxFilter(request));
+void checkCommon(const Request& request, const Limits& limits) {
+  checkHeader(request.header, limits);
+  checkTime({"scene_time"}, request.scene_time);
+  check(BoxFilter(request), limits);
 }
 
 /// Element `i` of an array of one element a query, or a single one for all.

@@ -33,7 +33,7 @@ Pose placed(const Pose& parent, const Pose& pose) {
 
 BoxChange moved(const std::shared_ptr<const RigidObject>& object, const BoxChange& move,
                 std::size_t first_shape) {
-  BoxChange change;
+  BoxChange change(move.max_coordinate);
   change.ns = move.ns;
   change.frame = move.frame;
   change.stamp = move.stamp;

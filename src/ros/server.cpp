@@ -4,6 +4,7 @@
 #include "ros/answers.h"
 #include "ros/box_filter.h"
 #include "ros/box_source.h"
+#include "ros/request_checks.h"
 
 #include <stdexcept>
 
@@ -100,6 +101,7 @@ FrameChange Server::frameOf(const std_msgs::Header& header) const {
   if (!missing.empty()) {
     throw std::runtime_error(missing);
   }
+  checkFrame(header.frame_id, fromMessage(transform.transform.translation), Limits(parameters));
   return FrameChange(transform.transform);
 }
 
@@ -114,7 +116,7 @@ void Server::resolveTopics(Request& request) const {
 
 template <class Request, class Response>
 void Server::answerNow(const Request& request, Response& response) {
-  check(request, static_cast<std::size_t>(monitor_.parameters().max_queries_per_call));
+  check(request, Limits(monitor_.parameters()));
   const FrameChange frame = frameOf(request.header);
   const SnapshotPtr snapshot = sceneAt(request.scene_time);
   Context context = {
@@ -129,7 +131,7 @@ void Server::answerNow(const Request& request, Response& response) {
 }
 
 void Server::answerNow(const GetSceneRequest& request, GetSceneResponse& response) {
-  check(request);
+  check(request, Limits(monitor_.parameters()));
   const SnapshotPtr snapshot =
       request.scene_id == 0 ? sceneAt(request.scene_time) : monitor_.sceneById(request.scene_id);
   if (!snapshot) {

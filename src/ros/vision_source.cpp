@@ -38,11 +38,11 @@ std::string readClass(WireReader& reader) {
 
 }  // namespace
 
-void decodeVisionBoundingBox3DArray(WireReader& reader, std::size_t max_boxes,
+void decodeVisionBoundingBox3DArray(WireReader& reader, const Limits& limits,
                                     DecodedMessage& message) {
   const WireHeader header = reader.header();
   const std::uint32_t boxes = reader.count(kBoxSize);
-  WholeSet set(boxes, max_boxes, header.stamp, message);
+  WholeSet set(boxes, limits, header.stamp, message);
   if (boxes == 0 || !message.problem.empty()) {
     return;
   }
@@ -58,7 +58,7 @@ void decodeVisionBoundingBox3DArray(WireReader& reader, std::size_t max_boxes,
   }
 }
 
-void decodeVisionDetection3DArray(WireReader& reader, std::size_t max_boxes,
+void decodeVisionDetection3DArray(WireReader& reader, const Limits& limits,
                                   DecodedMessage& message) {
   const WireHeader array = reader.header();
   const auto read = [&](WholeSet& set, std::uint32_t n) {
@@ -68,7 +68,7 @@ void decodeVisionDetection3DArray(WireReader& reader, std::size_t max_boxes,
     skipPointCloud2(reader);
     set.add(own.frame.empty() ? array : own, class_name, n, box.center, box.orientation, box.size);
   };
-  WholeSet::decode(reader, kDetectionSize, max_boxes, array.stamp, message, read);
+  WholeSet::decode(reader, kDetectionSize, limits, array.stamp, message, read);
 }
 
 }  // namespace box_query

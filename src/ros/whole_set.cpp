@@ -31,13 +31,13 @@ std::int64_t newId(Changes& changes, std::string_view class_name) {
 
 }  // namespace
 
-WholeSet::WholeSet(std::uint32_t boxes, std::size_t max_boxes, const ros::Time& stamp,
+WholeSet::WholeSet(std::uint32_t boxes, const Limits& limits, const ros::Time& stamp,
                    DecodedMessage& message)
-    : message_(message), boxes_(boxes) {
+    : message_(message), boxes_(boxes), max_coordinate_(limits.coordinate) {
   message.whole = true;
   message.stamp = stamp;
-  if (boxes > max_boxes) {
-    message.problem = tooManyBoxes(max_boxes);
+  if (boxes > limits.boxes) {
+    message.problem = tooManyBoxes(limits.boxes);
   }
 }
 
@@ -67,7 +67,7 @@ BoxChange& WholeSet::changeOf(const WireHeader& header, std::string_view class_n
     return *found;
   }
   const std::int64_t id = newId(changes, class_name);
-  BoxChange& change = changes.emplace_back();
+  BoxChange& change = changes.emplace_back(max_coordinate_);
   change.id = id;
   change.ns = class_name;
   change.label = class_name;

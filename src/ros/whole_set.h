@@ -19,17 +19,17 @@ class WholeSet {
   /// Reads the array of such a message behind its header: calls read(set, n) for each element.
   /// @param least bytes of an element whose strings and arrays are empty
   template <typename Read>
-  static void decode(WireReader& reader, std::size_t least, std::size_t max_boxes,
+  static void decode(WireReader& reader, std::size_t least, const Limits& limits,
                      const ros::Time& stamp, DecodedMessage& message, Read&& read) {
     const std::uint32_t elements = reader.count(least);
-    WholeSet set(elements, max_boxes, stamp, message);
+    WholeSet set(elements, limits, stamp, message);
     for (std::uint32_t n = 0; n < elements && reader.ok() && message.problem.empty(); ++n) {
       read(set, n);
     }
   }
 
-  /// Refuses a message that has more than `max_boxes`. `stamp` is that of the message.
-  WholeSet(std::uint32_t boxes, std::size_t max_boxes, const ros::Time& stamp,
+  /// Refuses a message that has more boxes than are allowed. `stamp` is that of the message.
+  WholeSet(std::uint32_t boxes, const Limits& limits, const ros::Time& stamp,
            DecodedMessage& message);
 
   /// Checks a box and appends it, or rejects it.
@@ -44,6 +44,7 @@ class WholeSet {
  private:
   DecodedMessage& message_;
   std::uint32_t boxes_;
+  double max_coordinate_;
 };
 
 }  // namespace box_query

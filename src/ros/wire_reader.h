@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -33,7 +34,10 @@ struct WireBox {
 /// Nothing is allocated here; views are into the bytes.
 class WireReader {
  public:
-  WireReader(const std::uint8_t* data, std::size_t size) : begin_(data), next_(data), left_(size) {}
+  /// Names are strings that are kept, for every box that has them.
+  WireReader(const std::uint8_t* data, std::size_t size,
+             std::size_t max_name_length = std::numeric_limits<std::size_t>::max())
+      : begin_(data), next_(data), left_(size), max_name_length_(max_name_length) {}
 
   bool ok() const { return failure_.empty(); }
   /// What did not fit; empty if ok().
@@ -56,6 +60,16 @@ class WireReader {
     const std::uint8_t* bytes = take(size);
     return bytes ? std::string_view(reinterpret_cast<const char*>(bytes), size)
                  : std::string_view();
+  }
+
+  /// A string that must not be longer than names may be: `what` says what it is.
+  std::string_view name(const char* what) {
+    const std::string_view text = string();
+    if (text.size() > max_name_length_) {
+      failName(what, text.size());
+      return {};
+    }
+    return text;
   }
 
   /// The length of an array whose elements take at least `element_size` bytes each: 0 and a failure
@@ -91,7 +105,7 @@ class WireReader {
   WireHeader header() {
     skip(sizeof(std::uint32_t));  // seq
     const ros::Time stamp = time();
-    return {stamp, string()};
+    return {stamp, name("frame")};
   }
 
   Vector3 vector() {
@@ -149,6 +163,12 @@ class WireReader {
     fail("a field of " + std::to_string(size) + " bytes is expected");
   }
 
+  [[gnu::noinline, gnu::cold]] void failName(const char* what, std::size_t size) {
+    fail("a " + std::string(what) + " of " + std::to_string(size) + " bytes, at most " +
+         std::to_string(max_name_length_) +
+         " are taken (shorten it, or raise ~max_name_length), ends");
+  }
+
   [[gnu::noinline, gnu::cold]] void fail(const std::string& what) {
     if (ok()) {
       failure_ = what + " at byte " + std::to_string(next_ - begin_) + ", where " +
@@ -161,6 +181,7 @@ class WireReader {
   const std::uint8_t* begin_;
   const std::uint8_t* next_;
   std::size_t left_;
+  std::size_t max_name_length_;
   std::string failure_;
 };
 

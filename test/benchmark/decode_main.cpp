@@ -162,7 +162,7 @@ void measure(const char* name, const char* type, Message (*make)(int), int boxes
   for (const BoxSource& each : boxSources()) {
     source = std::string(each.type) == type ? &each : source;
   }
-  if (!source || boxesOf(decodeMessage(*source, bytes.data(), bytes.size(), 1000000)) !=
+  if (!source || boxesOf(decodeMessage(*source, bytes.data(), bytes.size(), Limits())) !=
                      static_cast<std::size_t>(boxes)) {
     throw std::runtime_error(std::string(type) + " is not decoded as it should be");
   }
@@ -173,7 +173,7 @@ void measure(const char* name, const char* type, Message (*make)(int), int boxes
     return stream.getLength() + std::uint64_t{1};
   };
   const Pass ours = [&bytes, source] {
-    const DecodedMessage message = decodeMessage(*source, bytes.data(), bytes.size(), 1000000);
+    const DecodedMessage message = decodeMessage(*source, bytes.data(), bytes.size(), Limits());
     return message.problem.size() + 1;
   };
   const auto timing = timeSideBySide({roscpp, ours}, static_cast<std::size_t>(boxes), rounds, 0);

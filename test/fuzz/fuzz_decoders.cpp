@@ -6,6 +6,8 @@
 #include "unit/foreign_messages.h"
 #include "unit/source_fixture.h"
 
+#include <algorithm>
+
 #include <visualization_msgs/MarkerArray.h>
 
 namespace box_query::fuzz {
@@ -17,6 +19,15 @@ constexpr std::size_t kMemoryFactor = 16;
 constexpr std::size_t kSmall = 1U << 16;
 constexpr std::size_t kMaxBoxes = 1000;
 
+const Limits& limits() {
+  static const Limits some = [] {
+    Limits l;
+    l.boxes = kMaxBoxes;
+    return l;
+  }();
+  return some;
+}
+
 template <typename Message>
 void addSeed(const char* type, const Message& message, std::vector<Bytes>& all) {
   const std::vector<BoxSource>& sources = boxSources();
@@ -26,7 +37,7 @@ void addSeed(const char* type, const Message& message, std::vector<Bytes>& all) 
       const test::Bytes bytes = test::wire(message);
       seed.insert(seed.end(), bytes.begin(), bytes.end());
       const DecodedMessage decoded =
-          decodeMessage(sources[i], bytes.data(), bytes.size(), kMaxBoxes);
+          decodeMessage(sources[i], bytes.data(), bytes.size(), limits());
       require(decoded.problem.empty(), std::string("a seed is a good ") + type);
       all.push_back(seed);
       return;
@@ -99,7 +110,7 @@ void testOne(const std::uint8_t* data, std::size_t size) {
   const std::vector<BoxSource>& sources = boxSources();
   const AllocationLimit limit(kMemoryFactor * size + kSmall);
   const DecodedMessage message =
-      decodeMessage(sources[data[0] % sources.size()], data + 1, size - 1, kMaxBoxes);
+      decodeMessage(sources[data[0] % sources.size()], data + 1, size - 1, limits());
   if (!message.problem.empty()) {
     require(message.changes.empty(), "what is refused changes nothing");
     return;
@@ -109,8 +120,12 @@ void testOne(const std::uint8_t* data, std::size_t size) {
     boxes += change.boxes.size();
     for (const IdentifiedBox& each : change.boxes) {
       require(isValid(each.box), "a box that is decoded is valid");
+      require(isWithin(limits().coordinate, each.box.center), "it is where it may be");
     }
     require(change.boxes.empty() || !isBadFrame(change.frame), "boxes have a frame that tf takes");
+    require(std::max({change.ns.size(), change.label.size(), change.frame.size()}) <=
+                limits().name_length,
+            "names are no longer than allowed");
     require(change.rejected() == 0 || !change.problem.empty(), "a rejected box is explained");
   }
   require(boxes <= kMaxBoxes, "there are no more boxes than allowed");

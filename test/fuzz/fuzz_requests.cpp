@@ -38,7 +38,9 @@ void requireFit(const Request& /*request*/, const Response& /*response*/) {}
 template <typename Request>
 void ask(const Request& request) {
   typename test::ResponseTo<Request>::type response;
-  check(request, kMaxQueries);
+  Limits limits;
+  limits.queries = kMaxQueries;
+  check(request, limits);
   Context context = {snapshot(), ros::Time(100), FrameChange(), Drawing(0)};
   answer(request, context, response);
   requireFit(request, response);
@@ -46,7 +48,7 @@ void ask(const Request& request) {
 }
 void ask(const GetSceneRequest& request) {
   GetSceneResponse response;
-  check(request);
+  check(request, Limits());
   answer(request, snapshot(), ros::Time(100), response);
   test::bytesOf(response);
 }

@@ -6,6 +6,7 @@
 #include "ros/answers.h"
 
 #include <cmath>
+#include <limits>
 #include <random>
 #include <string>
 #include <utility>
@@ -126,7 +127,9 @@ template <class Request>
 auto ask(Request request, const Snapshot& snapshot, const FrameChange& frame = FrameChange(),
          int batch_threads = 1) {
   request.header.frame_id = frame.same() ? snapshot.frame : "other";
-  check(request, 100000);
+  Limits limits;
+  limits.coordinate = std::numeric_limits<double>::max();  // what answer() promises by itself
+  check(request, limits);
   Context context = {snapshot, ros::Time(101), frame, Drawing(), batch_threads};
   typename ResponseTo<Request>::type response;
   answer(request, context, response);
@@ -136,8 +139,10 @@ auto ask(Request request, const Snapshot& snapshot, const FrameChange& frame = F
 /// The sentence with which a request is refused; empty if it is not.
 template <class Request>
 std::string refusal(Request request, std::size_t max_queries = 1000) {
+  Limits limits;
+  limits.queries = max_queries;
   try {
-    check(request, max_queries);
+    check(request, limits);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }

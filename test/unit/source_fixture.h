@@ -51,7 +51,9 @@ inline DecodedMessage decodeBytes(std::string_view type, const Bytes& bytes,
                                   std::size_t max_boxes = kPlenty) {
   // A copy that ends where the message ends, so that a sanitizer sees what reads beyond.
   const Bytes exact(bytes);
-  return decodeMessage(sourceNamed(type), exact.data(), exact.size(), max_boxes);
+  Limits limits;
+  limits.boxes = max_boxes;
+  return decodeMessage(sourceNamed(type), exact.data(), exact.size(), limits);
 }
 
 inline std::size_t countOf(const BoxChange& change, Rejection why) {

@@ -151,7 +151,7 @@ TEST(GetScene, GivesTheBoxesThatPass) {
   EXPECT_EQ(response.poses.size(), 2U);
   EXPECT_EQ(response.poses.back().position, point(4, 0, 0));
   request.ignore_ids = {1};
-  EXPECT_THROW(check(request), std::invalid_argument);
+  EXPECT_THROW(check(request, Limits()), std::invalid_argument);
 }
 
 TEST(NoAnswer, HasNoNumberThatCouldBeTakenForOne) {

@@ -158,7 +158,7 @@ TEST(BoxFilter, PassesWhatItsDefinitionSays) {
         request.ignore_ids.push_back(upTo(3) - 1);
       }
     }
-    ASSERT_NO_THROW(check(BoxFilter(request)));
+    ASSERT_NO_THROW(check(BoxFilter(request), Limits()));
     std::string expected;
     for (const BoxName& name : snapshot.names) {
       expected += passes(request, name) ? 'x' : '-';

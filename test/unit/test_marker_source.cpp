@@ -46,11 +46,13 @@ const BoxSource& sourceOf() {
 template <typename Message>
 DecodedMessage decode(const Message& message, std::size_t max_boxes = kPlenty) {
   const auto bytes = wire(message);
-  return decodeMessage(sourceOf<Message>(), bytes.data(), bytes.size(), max_boxes);
+  Limits limits;
+  limits.boxes = max_boxes;
+  return decodeMessage(sourceOf<Message>(), bytes.data(), bytes.size(), limits);
 }
 
 DecodedMessage decodeBytes(const std::vector<std::uint8_t>& bytes) {
-  return decodeMessage(sourceOf<MarkerArray>(), bytes.data(), bytes.size(), kPlenty);
+  return decodeMessage(sourceOf<MarkerArray>(), bytes.data(), bytes.size(), Limits());
 }
 
 Marker cube() {
@@ -304,17 +306,15 @@ TEST(MarkerSource, RejectsNegativeSizesOrientationsOffUnitLengthAndBadFrames) {
   }
 }
 
-TEST(MarkerSource, HalvesSidesExactlyDownToWhereDoublesEnd) {
+TEST(MarkerSource, HalvesSidesExactly) {
   Marker marker = cube();
-  marker.scale.x = 3 * std::numeric_limits<double>::min();
-  marker.scale.y = 2 * std::numeric_limits<double>::denorm_min();
-  marker.scale.z = std::numeric_limits<double>::denorm_min();
+  marker.scale.x = 1e-200;
+  marker.scale.y = std::nextafter(1e-200, 1);
+  marker.scale.z = 1e7;
   const DecodedMessage message = decode(marker);
   ASSERT_EQ(message.changes.at(0).boxes.size(), 1U);
   const Vector3 half = message.changes[0].boxes[0].box.half_extents;
-  EXPECT_EQ(2 * half.x(), marker.scale.x);
-  EXPECT_EQ(2 * half.y(), marker.scale.y);
-  EXPECT_EQ(half.z(), 0.0) << "there is no half of the smallest double";
+  EXPECT_EQ(2 * half, Vector3(marker.scale.x, marker.scale.y, marker.scale.z));
 }
 
 TEST(MarkerSource, RefusesMessagesWithTooManyBoxes) {

@@ -24,7 +24,7 @@ struct Said {
 
 DecodedMessage wholeSet(const std::vector<Said>& boxes) {
   DecodedMessage message;
-  WholeSet set(static_cast<std::uint32_t>(boxes.size()), 1000, ros::Time(50), message);
+  WholeSet set(static_cast<std::uint32_t>(boxes.size()), Limits(), ros::Time(50), message);
   std::int64_t id = 0;
   for (const Said& box : boxes) {
     set.add({ros::Time(), box.frame}, box.class_name, id++, Vector3(box.x, 0.0, 0.0),
@@ -129,8 +129,8 @@ TEST_F(WholeSets, ReplaceABoxByABadOne) {
 }
 
 TEST_F(WholeSets, LoseOnlyTheBoxThatIsTooFarAway) {
-  setTransform("robot", 1.7e308);
-  say(wholeSet({{"car", 1, "robot"}, {"car", 1.7e308, "robot"}, {"car", 2, "robot"}}));
+  setTransform("robot", 9e6);
+  say(wholeSet({{"car", 1, "robot"}, {"car", 2e6, "robot"}, {"car", 2, "robot"}}));
   EXPECT_EQ(tracker_.draft().boxes.size(), 2U);
   EXPECT_EQ(state().rejected, 1U);
   EXPECT_EQ(state().waiting, 0U);
@@ -140,7 +140,7 @@ TEST_F(WholeSets, LoseOnlyTheBoxThatIsTooFarAway) {
 
 TEST_F(WholeSets, LeaveEqualIdsInTheirOrder) {
   DecodedMessage message;
-  WholeSet set(40, 1000, ros::Time(), message);
+  WholeSet set(40, Limits(), ros::Time(), message);
   for (int n = 0; n < 40; ++n) {
     set.add({ros::Time(), "map"}, "car", 7, Vector3(n, 0.0, 0.0), Quaternion::Identity(),
             Vector3::Ones());

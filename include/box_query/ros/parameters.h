@@ -47,6 +47,15 @@ struct Parameters {
   int max_boxes_per_message = 1000000;
   /// Rays or segments a request may carry; a larger request is refused.
   int max_queries_per_call = 1000000;
+  /// [m] Largest magnitude of a coordinate, a size or a radius in messages and requests. Beyond,
+  /// boxes are rejected and requests refused: float numbers, with which most boxes are passed over,
+  /// do not tell boxes apart that far away.
+  double max_coordinate = 1e7;
+  /// Bytes of a namespace, a label, an id, a frame or a topic; a message or a request with a longer
+  /// one is refused, since every box has its own.
+  int max_name_length = 255;
+  /// Names in each of the filters of a request; a request with more is refused.
+  int max_filter_names = 10000;
   /// Threads that answer services.
   int service_threads = 2;
   /// Threads that work on one batch of rays or segments, shared by all; 0: as many as there are
