@@ -24,7 +24,8 @@ const std::array<const char*, kRejections>& rejectionNames() {
       "an empty or malformed frame",
       "an unknown action",
       "a shape without three sides",
-      "a position or size out of bounds"};
+      "a position or size out of bounds",
+      "too many others of its topic"};
   return names;
 }
 

@@ -29,9 +29,10 @@ enum class Rejection {
   kFrame,
   kAction,
   kShape,
-  kOutOfBounds
+  kOutOfBounds,
+  kTooMany
 };
-constexpr std::size_t kRejections = 7;
+constexpr std::size_t kRejections = 8;
 /// A few words each, in the order of the enumeration.
 const std::array<const char*, kRejections>& rejectionNames();
 

@@ -45,8 +45,29 @@ Word BoxStore::hear(std::size_t topic_index, BoxChange&& change, const ros::Time
     item.object = word.change.object;
   }
   setMissing(topic, item, word.change.boxes.size(), word.change.rejected());
+  recount(topic, item);
   next_expiry_ = std::min(next_expiry_, word.expiry);
   return word;
+}
+
+bool BoxStore::fits(std::size_t topic_index, const BoxChange& change, std::size_t max_boxes,
+                    std::size_t max_namespaces) const {
+  const Topic& topic = topics_.at(topic_index);
+  std::size_t before = 0;
+  std::size_t after = std::max<std::size_t>(1, change.boxes.size());
+  if (topic.size + after <= max_boxes && topic.items.size() < max_namespaces) {
+    return true;  // whatever is there already
+  }
+  const auto items = topic.items.find(change.ns);
+  const bool known = items != topic.items.end();
+  if (known) {
+    const auto item = items->second.find(change.id);
+    if (item != items->second.end()) {
+      before = item->second.size;
+      after = std::max(after, item->second.boxes.size());
+    }
+  }
+  return topic.size - before + after <= max_boxes && (known || topic.items.size() < max_namespaces);
 }
 
 bool BoxStore::wants(const Word& word) const {
@@ -71,6 +92,7 @@ void BoxStore::place(Word&& word, const std::string& locked_frame) {
   item.stamp = change.stamp;
   item.locked_frame = locked_frame;
   item.boxes = std::move(change.boxes);
+  recount(topic, item);
 }
 
 void BoxStore::reject(const Word& word, std::size_t boxes, const std::string& problem) {
@@ -258,6 +280,12 @@ Item& BoxStore::itemOf(const Word& word) {
              : topics_.at(word.topic).items[word.change.ns][word.change.id];
 }
 
+void BoxStore::recount(Topic& topic, Item& item) {
+  const std::size_t size = std::max<std::size_t>(1, boxesOf(item));
+  topic.size += size - item.size;
+  item.size = size;
+}
+
 void BoxStore::setMissing(Topic& topic, Item& item, std::size_t waiting, std::size_t rejected) {
   topic.waiting += waiting - item.waiting;
   topic.rejected += rejected - item.rejected;
@@ -267,6 +295,7 @@ void BoxStore::setMissing(Topic& topic, Item& item, std::size_t waiting, std::si
 
 void BoxStore::forget(Topic& topic, Item& item) {
   setMissing(topic, item, 0, 0);
+  topic.size -= item.size;
   if (!item.boxes.empty()) {
     ++boxes_revision_;
   }

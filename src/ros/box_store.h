@@ -45,6 +45,8 @@ struct Item {
   std::int64_t latest_expiry = kForever;
   std::int64_t placed_expiry = kForever;
 
+  std::size_t size = 0;  ///< what counts of it: boxes that are placed or wait, at least one
+
   // Of the latest word.
   std::size_t waiting = 0;                    ///< boxes that wait for their transform
   std::size_t rejected = 0;                   ///< boxes that were rejected or given up
@@ -70,6 +72,11 @@ class BoxStore {
   /// Hears a kSet change at ROS time `now`: counts its rejected boxes, and its others as waiting
   /// until the word that is returned is placed or given up.
   Word hear(std::size_t topic, BoxChange&& change, const ros::Time& now);
+
+  /// Whether the topic, had it heard that kSet change, would have at most so many boxes and
+  /// namespaces. What has no box, since it was rejected for instance, counts as one.
+  bool fits(std::size_t topic, const BoxChange& change, std::size_t max_boxes,
+            std::size_t max_namespaces) const;
 
   /// Whether the word still matters: its item is neither deleted, nor expired, nor overtaken by a
   /// later word that was placed.
@@ -118,6 +125,7 @@ class BoxStore {
  private:
   struct Topic {
     Items items;
+    std::size_t size = 0;  ///< of all items
     std::size_t waiting = 0;
     std::size_t rejected = 0;
   };
@@ -126,6 +134,7 @@ class BoxStore {
   Item& itemAt(std::size_t topic, const std::string& ns, std::int64_t id);
   const Item* find(const Word& word) const;
   Item& itemOf(const Word& word);
+  static void recount(Topic& topic, Item& item);
   static void setMissing(Topic& topic, Item& item, std::size_t waiting, std::size_t rejected);
   void forget(Topic& topic, Item& item);
   std::size_t forgetBefore(Topic& topic, Items::iterator& items, std::uint64_t word);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <string_view>
 
 namespace box_query {
 namespace {
@@ -16,6 +17,22 @@ std::string nameOf(const BoxChange& change, std::int64_t box_id) {
 /// The name of its first box.
 std::string nameOf(const BoxChange& change) {
   return nameOf(change, change.boxes.empty() ? change.id : change.boxes.front().id);
+}
+
+/// What a whole set counts for, as BoxStore has it.
+std::size_t sizeOf(const std::vector<BoxChange>& changes) {
+  return std::accumulate(changes.begin(), changes.end(), std::size_t{0},
+                         [](std::size_t size, const BoxChange& change) {
+                           return size + std::max<std::size_t>(1, change.boxes.size());
+                         });
+}
+
+std::size_t countNamespaces(const std::vector<BoxChange>& changes) {
+  std::set<std::string_view> names;
+  for (const BoxChange& change : changes) {
+    names.insert(change.ns);
+  }
+  return names.size();
 }
 
 /// Gives what is appended its identity, and its boxes theirs.
@@ -73,6 +90,9 @@ void BoxTracker::receive(std::size_t topic_index, const BoxSource* source, Decod
   dropIfStale(topic_index, now);  // nobody may have looked since it was
   topic.source = source;
   counts_.ignored_markers += message.ignored;
+  if (message.whole && message.problem.empty()) {
+    message.problem = tooMuch(message.changes);
+  }
   if (!message.problem.empty()) {
     ++(source ? counts_.malformed_messages : counts_.unknown_type_messages);
     topic.refusal = "The last message on topic " + topic.state.parameters.topic +
@@ -80,6 +100,9 @@ void BoxTracker::receive(std::size_t topic_index, const BoxSource* source, Decod
     return;
   }
   topic.refusal.clear();
+  if (message.whole) {
+    topic.overflow.clear();
+  }
   topic.state.heard = true;
   ++topic.state.messages;
   topic.state.last_message = now;
@@ -109,7 +132,25 @@ std::string BoxTracker::setUnheard(std::size_t topic_index, std::size_t publishe
   return publishers > 0 ? unheardSentence(topic) : "";
 }
 
+/// Of a whole set: a sentence, or empty.
+std::string BoxTracker::tooMuch(const std::vector<BoxChange>& changes) const {
+  const auto max_boxes = static_cast<std::size_t>(parameters_.max_boxes_per_topic);
+  const auto max_namespaces = static_cast<std::size_t>(parameters_.max_namespaces);
+  if (sizeOf(changes) <= max_boxes &&
+      (changes.size() <= max_namespaces || countNamespaces(changes) <= max_namespaces)) {
+    return "";
+  }
+  return "it has more than " + mostOfTopic();
+}
+
+std::string BoxTracker::mostOfTopic() const {
+  return std::to_string(parameters_.max_boxes_per_topic) + " boxes or " +
+         std::to_string(parameters_.max_namespaces) +
+         " namespaces; publish fewer, or raise ~max_boxes_per_topic or ~max_namespaces";
+}
+
 void BoxTracker::forgetBefore(std::size_t topic, std::uint64_t word) {
+  topics_.at(topic).overflow.clear();
   const std::size_t rejected = store_.rejected(topic);
   const std::size_t boxes = store_.forgetBefore(topic, word);
   counts_.dropped_boxes += boxes;
@@ -119,6 +160,7 @@ void BoxTracker::forgetBefore(std::size_t topic, std::uint64_t word) {
 void BoxTracker::apply(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now) {
   if (change.kind == BoxChange::Kind::kClear) {
     store_.clear(topic);
+    topics_[topic].overflow.clear();
     noteStamp(change.stamp, now);
   } else if (change.kind == BoxChange::Kind::kRemove) {
     if (change.whole_namespace) {
@@ -167,6 +209,12 @@ void BoxTracker::move(std::size_t topic, BoxChange&& change, const ros::Time& no
 }
 
 void BoxTracker::hear(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now) {
+  if (!whole &&
+      !store_.fits(topic, change, static_cast<std::size_t>(parameters_.max_boxes_per_topic),
+                   static_cast<std::size_t>(parameters_.max_namespaces))) {
+    overflow(topic, change);
+    return;
+  }
   const std::size_t rejected = change.rejected();
   counts_.boxes += change.boxes.size() + rejected;
   counts_.rejected_boxes += rejected;
@@ -183,6 +231,17 @@ void BoxTracker::hear(std::size_t topic, BoxChange&& change, bool whole, const r
     }
     place(std::move(word));
   }
+}
+
+/// Nothing is kept of the change but that there was one.
+void BoxTracker::overflow(std::size_t topic, const BoxChange& change) {
+  const std::size_t boxes = std::max<std::size_t>(1, change.boxes.size() + change.rejected());
+  counts_.boxes += boxes;
+  counts_.rejected_boxes += boxes;
+  counts_.rejections[rejectionNames()[static_cast<std::size_t>(Rejection::kTooMany)]] += boxes;
+  topics_[topic].overflow = nameOf(change) + " was rejected: topic " +
+                            parameters_.box_topics[topic].topic + " would have more than " +
+                            mostOfTopic() + ", and delete all of the topic.";
 }
 
 void BoxTracker::place(Word&& word) {
@@ -301,6 +360,7 @@ void BoxTracker::dropIfStale(std::size_t topic, const ros::Time& now) {
   if (static_cast<std::int64_t>(now.toNSec()) >= dropTime(topic)) {
     ++changes_;
     counts_.dropped_boxes += store_.clear(topic);
+    topics_[topic].overflow.clear();
   }
 }
 

@@ -83,7 +83,8 @@ class BoxTracker {
     TopicState state;
     std::string refusal;                ///< of its last message; empty if that was accepted
     const BoxSource* source = nullptr;  ///< of that message
-    std::size_t unheard = 0;            ///< publishers that cannot be heard
+    std::string overflow;     ///< of what it may have; empty until that, and when it is cleared
+    std::size_t unheard = 0;  ///< publishers that cannot be heard
     std::string latest_type;  ///< of the publisher that came last, if some cannot be heard
   };
 
@@ -104,6 +105,9 @@ class BoxTracker {
   /// Rejects the boxes of a word whose transform overflowed.
   void rejectLostBoxes(Word& word);
   void wait(Word&& word);
+  std::string tooMuch(const std::vector<BoxChange>& changes) const;
+  std::string mostOfTopic() const;
+  void overflow(std::size_t topic, const BoxChange& change);
   void noteStamp(const ros::Time& stamp, const ros::Time& now);
   const std::optional<FramePose>& pose(const WaitingList::Place& place);
   void draftTopic(std::size_t topic, Draft& draft);

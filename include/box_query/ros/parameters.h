@@ -45,6 +45,10 @@ struct Parameters {
 
   /// Boxes a message may carry; a larger message is refused whole.
   int max_boxes_per_message = 1000000;
+  /// Boxes and namespaces that a topic may have at once. What goes beyond is rejected, and the
+  /// scene incomplete until the topic is cleared: by DELETEALL, a whole set, or new publishers.
+  int max_boxes_per_topic = 1000000;
+  int max_namespaces = 10000;
   /// Rays or segments a request may carry; a larger request is refused.
   int max_queries_per_call = 1000000;
   /// [m] Largest magnitude of a coordinate, a size or a radius in messages and requests. Beyond,
