@@ -103,6 +103,8 @@ class BoxStore {
   std::int64_t nextId(std::size_t topic, const std::string& ns) const;
   /// Words that are heard from now on have higher numbers.
   std::uint64_t lastWord() const { return last_word_; }
+  /// The number of a word of which nothing is kept.
+  std::uint64_t countWord() { return ++last_word_; }
 
   /// Forgets what has ended by `now`. @return the number of boxes that were placed or waiting.
   std::size_t expire(const ros::Time& now);

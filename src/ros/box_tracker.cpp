@@ -150,11 +150,15 @@ std::string BoxTracker::mostOfTopic() const {
 }
 
 void BoxTracker::forgetBefore(std::size_t topic, std::uint64_t word) {
-  topics_.at(topic).overflow.clear();
+  Topic& former = topics_.at(topic);
+  const bool overflowed = !former.overflow.empty() && former.overflow_word <= word;
+  if (overflowed) {
+    former.overflow.clear();
+  }
   const std::size_t rejected = store_.rejected(topic);
   const std::size_t boxes = store_.forgetBefore(topic, word);
   counts_.dropped_boxes += boxes;
-  changes_ += boxes > 0 || store_.rejected(topic) != rejected ? 1 : 0;
+  changes_ += boxes > 0 || overflowed || store_.rejected(topic) != rejected ? 1 : 0;
 }
 
 void BoxTracker::apply(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now) {
@@ -239,6 +243,7 @@ void BoxTracker::overflow(std::size_t topic, const BoxChange& change) {
   counts_.boxes += boxes;
   counts_.rejected_boxes += boxes;
   counts_.rejections[rejectionNames()[static_cast<std::size_t>(Rejection::kTooMany)]] += boxes;
+  topics_[topic].overflow_word = store_.countWord();
   topics_[topic].overflow = nameOf(change) + " was rejected: topic " +
                             parameters_.box_topics[topic].topic + " would have more than " +
                             mostOfTopic() + ", and delete all of the topic.";

@@ -83,7 +83,8 @@ class BoxTracker {
     TopicState state;
     std::string refusal;                ///< of its last message; empty if that was accepted
     const BoxSource* source = nullptr;  ///< of that message
-    std::string overflow;     ///< of what it may have; empty until that, and when it is cleared
+    std::string overflow;  ///< of what it may have; empty until that, and when it is cleared
+    std::uint64_t overflow_word = 0;
     std::size_t unheard = 0;  ///< publishers that cannot be heard
     std::string latest_type;  ///< of the publisher that came last, if some cannot be heard
   };

@@ -161,6 +161,18 @@ TEST(NearPlaces, HaveNoNaN) {
   }
 }
 
+TEST_F(Bounds, AreNotForgottenWithFormerPublishersWhereTheNewOneGoesBeyond) {
+  say({boxesOf("a", 1, 4)});
+  const std::uint64_t before = tracker_.lastWord();
+  say({boxesOf("b", 1, 1)});
+  EXPECT_EQ(rejected(), 1U);
+  tracker_.forgetBefore(0, before);
+  EXPECT_EQ(boxes(), 0U);
+  EXPECT_NE(reason(), "") << "what the new one said is not known";
+  tracker_.forgetBefore(0, tracker_.lastWord());
+  EXPECT_EQ(reason(), "");
+}
+
 TEST_F(Bounds, RefuseAWholeSetThatGoesBeyond) {
   say({boxesOf("a", 0, 4)}, true);
   say({boxesOf("b", 0, 2), boxesOf("c", 0, 2)}, true);

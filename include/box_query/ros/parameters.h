@@ -47,7 +47,8 @@ struct Parameters {
   int max_boxes_per_message = 1000000;
   /// Boxes and namespaces that a topic may have at once. What goes beyond is rejected, and the
   /// scene incomplete until the topic is cleared: by DELETEALL, a whole set, or new publishers.
-  int max_boxes_per_topic = 1000000;
+  /// While publishers change, it has the boxes of both for a moment.
+  int max_boxes_per_topic = 2000000;
   int max_namespaces = 10000;
   /// Rays or segments a request may carry; a larger request is refused.
   int max_queries_per_call = 1000000;
