@@ -58,8 +58,10 @@ struct Level {
 
 struct SceneView {
   /// Level 0 is the lowest. All nodes of the last one are roots.
-  Level levels[kMaxLevels];
+  Level levels[kMaxLevels + 1];
   int depth;  ///< how many levels there are; 0: no box is in the tree
+  /// The same for many segments: of a list of several nodes there is one more, around its nodes.
+  int depth_together;
   /// Of a list that is so short that its boxes are compared at once: slot i % kSlots of block
   /// i / kSlots is record i. None in blocks: it is not.
   const BoxBlock* blocks;

@@ -124,6 +124,13 @@ kernels::SceneView BoxTree::view() const {
     view.levels[i] = {levels_[i].bounds.data(), levels_[i].first.data(),
                       static_cast<std::uint32_t>(levels_[i].bounds.size())};
   }
+  constexpr std::uint32_t kNodes = 2;  // as soon compared as what is around them
+  static constexpr std::uint32_t kFirst[] = {0};
+  view.depth_together = view.depth;
+  if (view.depth == 1 && view.levels[0].nodes > kNodes) {
+    view.levels[1] = {&around_nodes_, kFirst, 1};
+    view.depth_together = 2;
+  }
   view.blocks = blocks_.data();
   view.boxes_in_blocks = static_cast<std::uint32_t>(blocks_.empty() ? 0 : records_.size());
   view.around_nodes = &around_nodes_;

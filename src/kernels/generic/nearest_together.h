@@ -15,17 +15,17 @@ struct NearCompanion {
   float bound;
   std::uint32_t at;  ///< the node, or the record, that it goes to
   int lowest;        ///< the lowest level where it was at a node
-  std::uint32_t node[kMaxLevels];
+  std::uint32_t node[kMaxLevels + 1];
   /// Lower bounds of the slots that it passed by, of roots and of each node below.
   alignas(64) float roots[kMostRootNodes * kSlots];
-  alignas(64) float below[kMaxLevels][kSlots];
+  alignas(64) float below[kMaxLevels + 1][kSlots];
 };
 
 class NearestTogether {
  public:
   NearestTogether(const SceneView& view, ApproachEach approach, void* context, Work& work)
       : view_(view),
-        top_(view.depth - 1),
+        top_(view.depth_together - 1),
         roots_(static_cast<int>(view.levels[top_].nodes)),
         approach_(approach),
         context_(context),
