@@ -9,7 +9,7 @@ from world import check
 
 
 def fault_flood_without_transform(world, report):
-    """Messages of 10,000 boxes, of a frame that nobody knows, come as fast as they can."""
+    """Messages of 10,000 boxes, of a frame that nobody knows, come fifty times a second."""
     world.start_node(box_topics=['boxes', 'flood'], max_waiting_boxes=20000, waiting_timeout=1.0)
     world.speak('boxes', 'boxes', 'MarkerArray', 'map', 4, 1, 2)
     first = world.speak('boxes', 'flood', 'Marker', 'map', 5, 1)

@@ -95,7 +95,7 @@ def main():
     publisher = rospy.Publisher(topic, kind, queue_size=1, latch=role in ('boxes', 'many'))
     publisher.publish(message())
     print(time.monotonic(), flush=True)
-    pause = {'flood': 0.0, 'once': 3600.0, 'row': 3600.0}.get(arguments[-1], PERIOD)
+    pause = {'once': 3600.0, 'row': 3600.0}.get(arguments[-1], PERIOD)
     while not rospy.is_shutdown():
         time.sleep(pause)
         publisher.publish(message())
