@@ -18,6 +18,9 @@ using Bytes = std::vector<std::uint8_t>;
 /// Inputs to begin with: good ones, of every kind that the target tells apart.
 std::vector<Bytes> seeds();
 
+/// These and what libFuzzer has found since.
+std::vector<Bytes> corpus();
+
 /// Whatever the bytes are, what they may not do is found out here, by require().
 void testOne(const std::uint8_t* data, std::size_t size);
 

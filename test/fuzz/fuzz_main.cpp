@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Feeds a fuzz target its seeds, and random mutations of them, where there is no libFuzzer. Blind
+// Feeds a fuzz target its corpus, and random mutations of them, where there is no libFuzzer. Blind
 // to coverage, but the same for every run of one seed.
 //
 //   PROGRAM [--runs N] [--seed S]
@@ -90,7 +90,7 @@ class Mutator {
 };
 
 void run(std::uint64_t runs, std::uint64_t seed) {
-  const std::vector<Bytes> all = seeds();
+  const std::vector<Bytes> all = corpus();
   // In blocks of their own size, so that a sanitizer sees what reads beyond.
   for (const Bytes& bytes : all) {
     testOne(Bytes(bytes).data(), bytes.size());
@@ -100,7 +100,7 @@ void run(std::uint64_t runs, std::uint64_t seed) {
     const Bytes bytes = mutator.next();
     testOne(Bytes(bytes).data(), bytes.size());
   }
-  std::printf("%zu seeds and %" PRIu64 " mutations of them, seed %" PRIu64 "\n", all.size(), runs,
+  std::printf("%zu inputs and %" PRIu64 " mutations of them, seed %" PRIu64 "\n", all.size(), runs,
               seed);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The entry points that libFuzzer calls. With --write-seeds=DIRECTORY the program writes its seeds
+// The entry points that libFuzzer calls. With --write-seeds=DIRECTORY the program writes its corpus
 // there and ends.
 #include "fuzz/fuzz.h"
 
@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
     if (std::strncmp((*argv)[i], option, std::strlen(option)) == 0) {
       const std::string directory = (*argv)[i] + std::strlen(option);
       int number = 0;
-      for (const box_query::fuzz::Bytes& seed : box_query::fuzz::seeds()) {
+      for (const box_query::fuzz::Bytes& seed : box_query::fuzz::corpus()) {
         std::ofstream file(directory + "/seed-" + std::to_string(number++), std::ios::binary);
         file.write(reinterpret_cast<const char*>(seed.data()),
                    static_cast<std::streamsize>(seed.size()));
