@@ -54,7 +54,7 @@ bool BoxStore::fits(std::size_t topic_index, const BoxChange& change, std::size_
                     std::size_t max_namespaces) const {
   const Topic& topic = topics_.at(topic_index);
   std::size_t before = 0;
-  std::size_t after = std::max<std::size_t>(1, change.boxes.size());
+  const std::size_t after = std::max<std::size_t>(1, change.boxes.size());
   if (topic.size + after <= max_boxes && topic.items.size() < max_namespaces) {
     return true;  // whatever is there already
   }
@@ -64,7 +64,6 @@ bool BoxStore::fits(std::size_t topic_index, const BoxChange& change, std::size_
     const auto item = items->second.find(change.id);
     if (item != items->second.end()) {
       before = item->second.size;
-      after = std::max(after, item->second.boxes.size());
     }
   }
   return topic.size - before + after <= max_boxes && (known || topic.items.size() < max_namespaces);
