@@ -49,7 +49,7 @@ struct Parameters {
   /// scene incomplete until the topic is cleared: by DELETEALL, a whole set, or new publishers.
   /// While publishers change, it has the boxes of both for a moment.
   int max_boxes_per_topic = 2000000;
-  int max_namespaces = 10000;
+  int max_namespaces = 100000;
   /// Rays or segments a request may carry; a larger request is refused.
   int max_queries_per_call = 1000000;
   /// [m] Largest magnitude of a coordinate, a size or a radius in messages and requests. Beyond,
