@@ -60,7 +60,7 @@ void check(const FindIntersectionsRequest& request, const Limits& limits) {
 
 void answer(const FindIntersectionsRequest& request, Context& context,
             FindIntersectionsResponse& response) {
-  describeScene(context.snapshot, context.now, response);
+  describeScene(request, context.snapshot, context.now, response);
   const auto mask = maskOf(BoxFilter(request), context.snapshot);
   const BoxMask* const looked_at = mask ? &*mask : nullptr;
   const Vector3 origin = context.frame.pointIn(fromMessage(request.origin));

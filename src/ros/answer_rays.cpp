@@ -88,7 +88,7 @@ CastRayResponse nothing() {
 }
 
 void answer(const CastRayRequest& request, Context& context, CastRayResponse& response) {
-  describeScene(context.snapshot, context.now, response);
+  describeScene(request, context.snapshot, context.now, response);
   const auto mask = maskOf(BoxFilter(request), context.snapshot);
   const Ray ray = rayIn(context, request.origin, request.direction, {"direction"});
   const double max_range = limitOf(request.max_range);
@@ -110,7 +110,7 @@ void answer(const CastRayRequest& request, Context& context, CastRayResponse& re
 }
 
 void answer(const CastRaysRequest& request, Context& context, CastRaysResponse& response) {
-  describeScene(context.snapshot, context.now, response);
+  describeScene(request, context.snapshot, context.now, response);
   const Scene& scene = context.snapshot.scene;
   const auto mask = maskOf(BoxFilter(request), context.snapshot);
   const BoxMask* const looked_at = mask ? &*mask : nullptr;

@@ -27,7 +27,7 @@ void check(const GetSceneRequest& request, const Limits& limits) {
 
 void answer(const GetSceneRequest& request, const Snapshot& snapshot, const ros::Time& now,
             GetSceneResponse& response) {
-  describeScene(snapshot, now, response);
+  describeScene(request, snapshot, now, response);
   const auto mask = maskOf(BoxFilter(request), snapshot);
   for (std::size_t i = 0; i < snapshot.names.size(); ++i) {
     if (mask && !(*mask)[i]) {

@@ -228,7 +228,7 @@ CheckSegmentsResponse nothing() {
 }
 
 void answer(const CheckSegmentRequest& request, Context& context, CheckSegmentResponse& response) {
-  describeScene(context.snapshot, context.now, response);
+  describeScene(request, context.snapshot, context.now, response);
   const Snapshot& snapshot = context.snapshot;
   const auto mask = maskOf(BoxFilter(request), snapshot);
   const BoxMask* const looked_at = mask ? &*mask : nullptr;
@@ -269,7 +269,7 @@ void answer(const CheckSegmentRequest& request, Context& context, CheckSegmentRe
 
 void answer(const CheckSegmentsRequest& request, Context& context,
             CheckSegmentsResponse& response) {
-  describeScene(context.snapshot, context.now, response);
+  describeScene(request, context.snapshot, context.now, response);
   const auto mask = maskOf(BoxFilter(request), context.snapshot);
   SegmentBatch batch(request, context, mask ? &*mask : nullptr, response);
   const std::size_t segments = segmentCount(request);

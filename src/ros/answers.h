@@ -4,6 +4,7 @@
 /// from a snapshot. The meaning of every field is in srv/.
 #pragma once
 
+#include "ros/box_filter.h"
 #include "ros/conversions.h"
 #include "ros/drawing.h"
 #include "ros/limits.h"
@@ -72,10 +73,12 @@ CheckSegmentResponse nothing();
 template <>
 CheckSegmentsResponse nothing();
 
-/// The part that all responses share: the scene, its age, and whether it is complete.
-template <class Response>
-void describeScene(const Snapshot& snapshot, const ros::Time& now, Response& response) {
-  const Completeness completeness = snapshot.completeness(now);
+/// The part that all responses share: the scene, its age, and whether it is complete as far as it
+/// matters to the request.
+template <class Request, class Response>
+void describeScene(const Request& request, const Snapshot& snapshot, const ros::Time& now,
+                   Response& response) {
+  const Completeness completeness = completenessOf(BoxFilter(request), snapshot, now);
   response.scene_id = snapshot.id;
   response.scene_age = snapshot.age(now);
   response.complete = completeness.complete;

@@ -111,6 +111,16 @@ bool visitIgnored(const BoxFilter& filter, std::size_t i, const Names& names, co
   return any;
 }
 
+/// Whether a box of that topic can pass.
+bool mayPass(const BoxFilter& filter, const std::string& topic) {
+  const auto isMeant = [&topic](const std::string& name) { return resolved(name) == topic; };
+  const bool all_ignored =
+      filter.ignore_namespaces.empty() &&
+      std::any_of(filter.ignore_topics.begin(), filter.ignore_topics.end(), isMeant);
+  return !all_ignored && (filter.topics.empty() ||
+                          std::any_of(filter.topics.begin(), filter.topics.end(), isMeant));
+}
+
 /// The first few of some names, each once.
 class Listing {
  public:
@@ -289,6 +299,21 @@ std::optional<BoxMask> maskOf(const BoxFilter& filter, const Snapshot& snapshot)
   }
   setRanges(std::move(ignored), false, mask);
   return mask;
+}
+
+Completeness completenessOf(const BoxFilter& filter, const Snapshot& snapshot,
+                            const ros::Time& now) {
+  if (!filter.filters()) {
+    return snapshot.completeness(now);
+  }
+  Completeness result = snapshot.completeness(
+      now, [&filter](const std::string& topic) { return mayPass(filter, topic); });
+  const std::string unknown = unknownTopic(filter, snapshot);
+  if (!unknown.empty()) {
+    result.complete = false;
+    result.reason += (result.reason.empty() ? "" : " ") + unknown;
+  }
+  return result;
 }
 
 std::string unknownNames(const BoxFilter& filter, const Snapshot& snapshot) {

@@ -50,6 +50,11 @@ void check(const BoxFilter& filter, const Limits& limits);
 /// @pre check(filter)
 std::optional<BoxMask> maskOf(const BoxFilter& filter, const Snapshot& snapshot);
 
+/// Whether the boxes that may pass are known: completeness() of the topics that they can be of. A
+/// topic that the filter chooses and the snapshot does not listen to is not known either.
+Completeness completenessOf(const BoxFilter& filter, const Snapshot& snapshot,
+                            const ros::Time& now);
+
 /// A sentence for the first topic of the filter that the snapshot does not listen to, and for the
 /// first namespace, label and ignored name that no box has; empty if there are none. Nothing of
 /// such a name need be there, so that it is no error; but who mistypes a name is told that all is

@@ -159,7 +159,7 @@ void Server::handle(CheckedRequest<Request>& checked, Response& response) {
   } catch (const std::exception& error) {
     ++refused_;
     response = nothing<Response>();
-    describeScene(*monitor_.scene(), ros::Time::now(), response);
+    describeScene(checked.request, *monitor_.scene(), ros::Time::now(), response);
     response.message = error.what();
   }
 }

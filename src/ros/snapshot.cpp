@@ -48,12 +48,16 @@ std::string TopicState::missing(const ros::Time& now) const {
   return text.str();
 }
 
-Completeness Snapshot::completeness(const ros::Time& now) const {
+Completeness Snapshot::completeness(
+    const ros::Time& now, const std::function<bool(const std::string& topic)>& matters) const {
   Completeness result;
   if (now.isZero()) {  // then lifetimes never end, and nothing grows stale
     result.reason = "The ROS clock has not started: publish /clock, or unset /use_sim_time.";
   }
   for (const TopicState& topic : topics) {
+    if (matters && !matters(topic.parameters.topic)) {
+      continue;
+    }
     const std::string missing = topic.missing(now);
     if (!missing.empty()) {
       result.reason += (result.reason.empty() ? "" : " ") + missing;

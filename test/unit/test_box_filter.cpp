@@ -258,6 +258,37 @@ TEST(BoxFilter, ListsAFewOfManyNames) {
   EXPECT_NE(ten.find("'18', '19'. Correct"), std::string::npos) << ten;
 }
 
+TEST(BoxFilter, LeavesOutWhatOtherTopicsLack) {
+  Snapshot snapshot = smallSnapshot();
+  snapshot.topics[1].problem = "One box of topic /b waits.";
+  CheckSegmentRequest request;
+  const auto reason = [&] {
+    const CheckSegmentResponse response = ask(request, snapshot);
+    EXPECT_EQ(response.complete, response.reason.empty());
+    EXPECT_EQ(response.clear, response.complete);
+    return response.reason;
+  };
+  EXPECT_EQ(reason(), "One box of topic /b waits.");
+  request.topics = {"a"};
+  EXPECT_EQ(reason(), "") << "nothing of /b can be in the way";
+  request.topics = {"a", "b"};
+  EXPECT_EQ(reason(), "One box of topic /b waits.");
+  request.topics.clear();
+  request.ignore_topics = {"/c", "/b"};
+  EXPECT_EQ(reason(), "");
+  request.ignore_topics = {"/b"};
+  request.ignore_namespaces = {"rack"};
+  EXPECT_EQ(reason(), "One box of topic /b waits.") << "it may be of another namespace";
+  request.topics = {"/a"};
+  EXPECT_EQ(reason(), "");
+  request = CheckSegmentRequest();
+  request.namespaces = {"robot"};
+  EXPECT_EQ(reason(), "One box of topic /b waits.");
+  request.topics = {"/a", "/nothing"};
+  EXPECT_EQ(reason(),
+            "The node does not listen to the topic '/nothing': there are '/a', '/b'. Correct it.");
+}
+
 TEST(BoxFilter, DecidesWhatIsAnswered) {
   CastRayRequest request;
   request.direction = vector(1, 0, 0);

@@ -73,8 +73,11 @@ struct Snapshot {
   std::vector<std::size_t> outdated;
 
   /// At ROS time `now`: every required topic heard, none stale, no box waiting or rejected. At time
-  /// 0, before a simulated clock has started, nothing is complete.
-  Completeness completeness(const ros::Time& now) const;
+  /// 0, before a simulated clock has started, nothing is complete. Where only some topics matter to
+  /// a question, `matters` accepts their names: what the others lack does not count.
+  Completeness completeness(
+      const ros::Time& now,
+      const std::function<bool(const std::string& topic)>& matters = nullptr) const;
   /// [s] from `stamp` to `now`; +inf if no message has been heard.
   double age(const ros::Time& now) const;
 };
