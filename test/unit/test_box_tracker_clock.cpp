@@ -86,6 +86,16 @@ TEST_F(ClockThatGoesBack, LeavesNothingThatCameLongBefore) {
   EXPECT_FALSE(tracker_.draft().snapshot.topics[0].heard);
 }
 
+TEST_F(ClockThatGoesBack, LeavesNothingWithoutAStampAndCallsItNotHeard) {
+  say({boxAt(1, 1, ros::Time())});
+  ASSERT_TRUE(tracker_.draft().snapshot.completeness(kBefore).complete);
+  turnBack();
+  EXPECT_EQ(contents(), "");
+  EXPECT_EQ(tracker_.draft().snapshot.completeness(kNow).reason,
+            "No boxes have come on topic boxes: start what publishes them, or correct "
+            "~box_topics.");
+}
+
 TEST_F(ClockThatGoesBack, LetsLifetimesBeginThen) {
   BoxChange mortal = boxAt(1, 1, kNow);
   mortal.lifetime = 1500000000;
