@@ -169,8 +169,9 @@ class SceneMonitor {
                               geometry_msgs::TransformStamped& transform) const;
 
   /// Calls `changed` from a thread of the monitor after the boxes have changed, at most once a
-  /// change; it may call any other function of the monitor. Nothing is built ahead until it returns.
-  /// Returns when a running call of the one before has ended, so that null takes leave safely.
+  /// change; it may call any other function of the monitor. Nothing is built ahead until it
+  /// returns. Returns when a running call of the one before has ended, so that null takes leave
+  /// safely.
   void setChangedCallback(std::function<void()> changed);
 
   MonitorStatistics statistics() const;
