@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
               << box_query::Parameters::documentation();
     return 0;
   }
+  box_query::keepFreedMemory();
   ros::init(argc, argv, "box_query");
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
   const ros::NodeHandle nh;

@@ -117,6 +117,7 @@ struct OwnThread {
 }  // namespace
 
 int serve(int argc, char** argv) {
+  keepFreedMemory();
   ros::init(argc, argv, "box_query", ros::init_options::NoSigintHandler);
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
   const ros::NodeHandle nh;
