@@ -6,11 +6,13 @@
 #include <box_query/batch.h>
 
 #include <algorithm>
+#include <array>
+#include <vector>
 
 namespace box_query {
 namespace {
 
-/// Of a batch, segments between two looks at whether the node shuts down.
+/// Of a batch, segments that the scene gets together.
 constexpr std::size_t kSegmentsAtOnce = 128;
 
 Segment segmentIn(const Context& context, const geometry_msgs::Point& start,
@@ -102,21 +104,25 @@ class SegmentBatch {
   /// Whether what is known is enough to say that a segment is clear.
   bool trusted() const { return trusted_; }
 
-  /// @return whether segment `i` is blocked
-  bool answerOne(std::size_t i) {
-    const Segment segment = segmentOf(i);
-    bool clear = false;
-    if (want_nearest_) {
-      const Clearance nearest = nearestOf(segment);
-      set(i, nearest);
-      clear = isMoreThan(radiusOf(i), nearest);
+  /// Answers up to kSegmentsAtOnce segments.
+  void answerSome(std::size_t begin, std::size_t end) {
+    checkRunning(context_.stopping);
+    std::array<Segment, kSegmentsAtOnce> some;
+    for (std::size_t i = begin; i < end; ++i) {
+      some[i - begin] = segmentOf(i);
     }
-    if (!want_blockage_) {
-      return setState(i, !clear && !scene_.isClear(segment, radiusOf(i), mask_));
+    if (!want_nearest_) {
+      for (std::size_t i = begin; i < end; ++i) {
+        decide(i, some[i - begin], false);
+      }
+      return;
     }
-    const Blockage blockage = clear ? Blockage() : blockageOf(i, segment);
-    set(i, blockage);
-    return setState(i, blockage.blocked);
+    std::vector<Clearance> nearest(end - begin);
+    scene_.clearance(some.data(), end - begin, nearest.data(), mask_);
+    for (std::size_t i = begin; i < end; ++i) {
+      set(i, nearest[i - begin]);
+      decide(i, some[i - begin], isMoreThan(radiusOf(i), nearest[i - begin]));
+    }
   }
 
   /// The few that are drawn, where somebody looks, are asked again.
@@ -145,6 +151,17 @@ class SegmentBatch {
     return scene_.firstBlockage(segment, radiusOf(i), mask_);
   }
 
+  /// @param clear whether that is known; else it is asked
+  void decide(std::size_t i, const Segment& segment, bool clear) {
+    if (!want_blockage_) {
+      setState(i, !clear && !scene_.isClear(segment, radiusOf(i), mask_));
+      return;
+    }
+    const Blockage blockage = clear ? Blockage() : blockageOf(i, segment);
+    set(i, blockage);
+    setState(i, blockage.blocked);
+  }
+
   void set(std::size_t i, const Clearance& nearest) {
     if (request_.want_clearances) {
       response_.clearances[i] = nearest.distance;
@@ -165,11 +182,10 @@ class SegmentBatch {
       response_.blocking_boxes[i] = indexOf(blockage.box);
     }
   }
-  bool setState(std::size_t i, bool blocked) {
+  void setState(std::size_t i, bool blocked) {
     response_.states[i] = blocked    ? CheckSegmentsResponse::BLOCKED
                           : trusted_ ? CheckSegmentsResponse::CLEAR
                                      : CheckSegmentsResponse::UNKNOWN;
-    return blocked;
   }
 
   const CheckSegmentsRequest& request_;
@@ -277,17 +293,15 @@ void answer(const CheckSegmentsRequest& request, Context& context,
   // Those that may be the last one after the other.
   std::size_t answered = 0;
   bool ended = false;
-  while (request.stop_at_blocked && answered < segments && !ended) {
-    checkRunning(context.stopping);
-    ended = batch.answerOne(answered++);
+  for (; request.stop_at_blocked && answered < segments && !ended; ++answered) {
+    batch.answerSome(answered, answered + 1);
+    ended = response.states[answered] == CheckSegmentsResponse::BLOCKED;
   }
   forEachCountedPart(ended ? 0 : segments - answered, context.batch_threads, context.totals,
                      [&](std::size_t begin, std::size_t end) {
-                       for (std::size_t i = begin; i < end; ++i) {
-                         if ((i - begin) % kSegmentsAtOnce == 0) {
-                           checkRunning(context.stopping);
-                         }
-                         batch.answerOne(answered + i);
+                       for (; begin < end; begin += kSegmentsAtOnce) {
+                         batch.answerSome(answered + begin,
+                                          answered + std::min(begin + kSegmentsAtOnce, end));
                        }
                      });
   batch.draw();
