@@ -50,8 +50,8 @@ struct Fields {
   std::uint32_t primitives = 0;
   std::size_t ignored = 0;   ///< primitives that are no boxes
   std::uint32_t others = 0;  ///< meshes and planes
-  std::vector<WireReader>
-      shape_poses;  ///< each at an array of poses: of primitives, meshes, planes
+  /// Each at an array of poses: of primitives, meshes, planes.
+  boost::container::small_vector<WireReader, 3> shape_poses;
   std::shared_ptr<RigidObject> object = std::make_shared<RigidObject>();
 };
 
@@ -68,16 +68,18 @@ void readPrimitives(WireReader& reader, const Limits& limits, Fields& fields, Bo
     message.problem = tooManyBoxes(limits.boxes);
     return;
   }
+  change.boxes.reserve(fields.primitives);
   fields.object->boxes.reserve(fields.primitives);
   fields.shape_poses.push_back(reader);
   const std::uint32_t poses = reader.count(kPoseSize);
+  const Placer placed(fields.pose);
   for (std::uint32_t n = 0; n < std::max(fields.primitives, poses) && reader.ok(); ++n) {
     const Pose in_object = n < poses ? readPose(reader) : Pose();
     if (n >= fields.primitives) {
       continue;  // a pose too many
     }
     const SolidPrimitive solid = readSolidPrimitive(solids);
-    const Pose pose = placed(fields.pose, in_object);
+    const Pose pose = placed(in_object);
     const std::size_t accepted = change.boxes.size();
     if (solid.type != SolidPrimitive::kBox) {
       ++fields.ignored;
@@ -210,7 +212,7 @@ void readCollisionObject(WireReader& reader, const Limits& limits, DecodedMessag
   change.whole_namespace = true;
   const WireHeader header = reader.header();
   change.stamp = header.stamp;
-  change.frame = stripSlash(header.frame);
+  change.frame = std::string(stripSlash(header.frame));
   Fields fields;
   fields.pose = readPose(reader);
   change.ns = reader.name("id");

@@ -19,21 +19,20 @@ struct SolidPrimitive {
   static constexpr std::uint8_t kBox = 1;
   static constexpr std::size_t kSmallest = 5;  ///< bytes, without dimensions
 
-  std::uint8_t type = 0;
-  std::uint32_t dimensions = 0;
-  Vector3 sides = Vector3::Zero();  ///< full ones [m], of a box that has three
+  std::uint8_t type;
+  std::uint32_t dimensions;
+  Vector3 sides;  ///< full ones [m], of a box that has three
 };
 
 inline SolidPrimitive readSolidPrimitive(WireReader& reader) {
-  SolidPrimitive solid;
-  solid.type = reader.number<std::uint8_t>();
-  solid.dimensions = reader.count(sizeof(double));
-  if (solid.type == SolidPrimitive::kBox && solid.dimensions == 3) {
-    solid.sides = reader.vector();
-  } else {
-    reader.skip(std::uint64_t{solid.dimensions} * sizeof(double));
+  // Not of the struct: two members that were just written would be read as one, and waited for.
+  const auto type = reader.number<std::uint8_t>();
+  const std::uint32_t dimensions = reader.count(sizeof(double));
+  if (type == SolidPrimitive::kBox && dimensions == 3) {
+    return {type, dimensions, reader.vector()};
   }
-  return solid;
+  reader.skip(std::uint64_t{dimensions} * sizeof(double));
+  return {type, dimensions, Vector3::Zero()};
 }
 
 /// sensor_msgs/PointCloud2

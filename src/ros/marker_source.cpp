@@ -53,7 +53,7 @@ void readMarker(WireReader& reader, const Limits& limits, std::size_t& boxes,
   BoxChange& change = message.changes.emplace_back(limits.coordinate);
   const WireHeader header = reader.header();
   change.stamp = header.stamp;
-  change.frame = stripSlash(header.frame);
+  change.frame = std::string(stripSlash(header.frame));
   change.ns = reader.name("namespace");
   change.id = reader.number<std::int32_t>();
   const auto type = reader.number<std::int32_t>();

@@ -23,14 +23,6 @@ std::shared_ptr<const RigidObject> rearranged(const RigidObject& object, const B
 
 }  // namespace
 
-Pose placed(const Pose& parent, const Pose& pose) {
-  if (parent.orientation.coeffs() == Quaternion::Identity().coeffs()) {
-    return {parent.position + pose.position, pose.orientation};
-  }
-  const Eigen::Matrix3d rotation = parent.orientation.normalized().toRotationMatrix();
-  return {parent.position + rotation * pose.position, parent.orientation * pose.orientation};
-}
-
 BoxChange moved(const std::shared_ptr<const RigidObject>& object, const BoxChange& move,
                 std::size_t first_shape) {
   BoxChange change(move.max_coordinate);
@@ -41,9 +33,9 @@ BoxChange moved(const std::shared_ptr<const RigidObject>& object, const BoxChang
   change.object = move.boxes.size() > 1 ? rearranged(*object, move, first_shape) : object;
   change.rejections = object->rejections;
   change.problem = object->problem;
-  const Pose pose = poseOf(move.boxes.front());
+  const Placer placed(poseOf(move.boxes.front()));
   for (const IdentifiedBox& box : change.object->boxes) {
-    const Pose now = placed(pose, poseOf(box));
+    const Pose now = placed(poseOf(box));
     change.add(box.id, now.position, now.orientation, 2.0 * box.box.half_extents);
   }
   return change;

@@ -19,8 +19,26 @@ struct Pose {
   Quaternion orientation = Quaternion::Identity();
 };
 
-/// A pose that is given in `parent`. An identity leaves it as it is, to the last bit.
-Pose placed(const Pose& parent, const Pose& pose);
+/// Moves poses that are given in `parent`. An identity leaves them as they are, to the last bit.
+class Placer {
+ public:
+  explicit Placer(const Pose& parent)
+      : parent_(parent),
+        turns_(parent.orientation.coeffs() != Quaternion::Identity().coeffs()),
+        rotation_(parent.orientation.normalized().toRotationMatrix()) {}
+
+  Pose operator()(const Pose& pose) const {
+    if (!turns_) {
+      return {parent_.position + pose.position, pose.orientation};
+    }
+    return {parent_.position + rotation_ * pose.position, parent_.orientation * pose.orientation};
+  }
+
+ private:
+  Pose parent_;
+  bool turns_;
+  Eigen::Matrix3d rotation_;
+};
 
 /// What a kSet or kAppend change says of an object, in the object's own frame.
 struct RigidObject {

@@ -67,11 +67,14 @@ BoxChange& WholeSet::changeOf(const WireHeader& header, std::string_view class_n
     return *found;
   }
   const std::int64_t id = newId(changes, class_name);
+  if (changes.size() == 1) {
+    changes.reserve(kRecentChanges);  // where there are two there are often more
+  }
   BoxChange& change = changes.emplace_back(max_coordinate_);
   change.id = id;
   change.ns = class_name;
   change.label = class_name;
-  change.frame = frame;
+  change.frame = std::string(frame);
   change.stamp = header.stamp;
   if (changes.size() == 1) {
     change.boxes.reserve(boxes_);
