@@ -15,7 +15,7 @@ import rospy
 from box_query.srv import CastRay, CastRayRequest, GetScene, GetSceneRequest
 from geometry_msgs.msg import Vector3
 
-TIMEOUT = 60.0  # [s] for whatever is waited for: it is measured, and never fails for being slow
+TIMEOUT = 120.0  # [s] for whatever is waited for: it is measured, and never fails for being slow
 NODE = '/box_query'
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 
@@ -99,7 +99,8 @@ class World:
         for name, value in parameters.items():
             rospy.set_param(NODE + '/' + name, value)
         self.node = self.start([self.node_path])
-        self.until(self.scene, 'the node')
+        self.until(lambda: self.node.poll() is not None or self.scene(), 'the node')
+        check(self.node.poll() is None, 'the node did not start')
 
     def launch(self, *arguments):
         """The node, by its launch file."""
