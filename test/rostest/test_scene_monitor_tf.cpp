@@ -128,6 +128,29 @@ TEST_F(SceneMonitorTf, FollowsFramesThatBoxesAreLockedTo) {
   EXPECT_TRUE(hasBoxes(*monitor_, 0));
 }
 
+TEST_F(SceneMonitorTf, RefitsListsThatAreLockedToFrames) {
+  start();
+  move("belt", ros::Time(5), 5.0);
+  Marker list = at(cube("belt", 1, 0.25), ros::Time(5));
+  list.type = Marker::CUBE_LIST;
+  list.frame_locked = true;
+  list.points.resize(200);
+  for (std::size_t n = 0; n < list.points.size(); ++n) {
+    list.points[n].y = 2.0 * static_cast<double>(n);
+  }
+  say({list});
+  ASSERT_TRUE(hasBoxes(*monitor_, 200));
+  const MonitorStatistics before = monitor_->statistics();
+  for (int second = 10; second < 15; ++second) {
+    move("belt", ros::Time(second), second, kQuarterTurn);
+    EXPECT_TRUE(isAt(3, Vector3(second - 6.0, 0.25, 0.0)));
+  }
+  const MonitorStatistics after = monitor_->statistics();
+  EXPECT_GE(after.builds, before.builds + 5);
+  EXPECT_GE(after.refits - before.refits, after.builds - before.builds - 1)
+      << "all but the quarter turn";
+}
+
 TEST_F(SceneMonitorTf, ShowsAnEarlierWordWhileEveryTransformIsLate) {
   start();
   for (int second = 10; second < 20; ++second) {
