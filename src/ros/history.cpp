@@ -14,24 +14,16 @@ std::int64_t nanoseconds(const ros::Time& time) {
   return static_cast<std::int64_t>(time.toNSec());
 }
 
-template <class Numbers>
-bool sameBits(const Numbers& a, const Numbers& b) {
-  return std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
-}
-bool sameBits(const AlignedBox& a, const AlignedBox& b) {
-  return sameBits(a.min, b.min) && sameBits(a.max, b.max);
-}
-bool sameBits(const OrientedBox& a, const OrientedBox& b) {
-  return sameBits(a.center, b.center) && sameBits(a.orientation.coeffs(), b.orientation.coeffs()) &&
-         sameBits(a.half_extents, b.half_extents);
-}
+/// Numbers that are equal may still be told apart: 0 and -0.
 bool sameBits(const Box& a, const Box& b) {
-  return a.index() == b.index() &&
-         std::visit(
-             [&b](const auto& box) {
-               return sameBits(box, std::get<std::decay_t<decltype(box)>>(b));
-             },
-             a);
+  static_assert(sizeof(AlignedBox) == 6 * sizeof(double), "no padding");
+  static_assert(sizeof(OrientedBox) == 10 * sizeof(double), "no padding");
+  const auto same = [&b](const auto& box) {
+    const auto* other = std::get_if<std::decay_t<decltype(box)>>(&b);
+    return other != nullptr && std::memcmp(static_cast<const void*>(&box),
+                                           static_cast<const void*>(other), sizeof(box)) == 0;
+  };
+  return std::visit(same, a);
 }
 
 /// What malloc adds to a block, and a shared pointer to what it points to.
@@ -153,11 +145,6 @@ History::History(const Parameters& parameters)
       max_scenes_(static_cast<std::size_t>(parameters.max_past_scenes)),
       max_size_(static_cast<std::size_t>(parameters.max_history_memory) * 1000000) {}
 
-void History::clear() {
-  scenes_.clear();
-  size_ = 0;
-}
-
 void History::follow(BoxTracker& tracker, const ros::Time& now) {
   if (!keeps() || now.isZero()) {
     return;
@@ -172,18 +159,56 @@ void History::follow(BoxTracker& tracker, const ros::Time& now) {
 }
 
 void History::addIfNew(BoxTracker& tracker, const ros::Time& begin) {
-  if (scenes_.empty() || tracker.isAfter(scenes_.back()->id())) {
+  if (last_id_ == 0 || tracker.isAfter(last_id_)) {
     add(begin, tracker.draft());
   }
 }
 
-void History::add(const ros::Time& begin, const Draft& draft) {
+void History::add(const ros::Time& begin, Draft draft) {
+  last_id_ = draft.snapshot.id;
+  note({begin, std::move(draft)});
+}
+
+void History::clear() {
+  last_id_ = 0;
+  note({ros::Time(), std::nullopt});
+}
+
+void History::note(Note&& note) {
+  const std::lock_guard<std::mutex> lock(notes_mutex_);
+  notes_.push_back(std::move(note));
+}
+
+void History::remember() {
+  remembered();
+}
+
+/// Locks the scenes, after all that was noted is among them.
+std::unique_lock<std::mutex> History::remembered() {
+  std::unique_lock<std::mutex> lock(scenes_mutex_);
+  std::vector<Note> notes;
+  {
+    const std::lock_guard<std::mutex> notes_lock(notes_mutex_);
+    notes.swap(notes_);
+  }
+  for (const Note& note : notes) {
+    remember(note);
+  }
+  return lock;
+}
+
+void History::remember(const Note& note) {
+  if (!note.draft) {
+    scenes_.clear();
+    size_ = 0;
+    return;
+  }
   const PastScene* const last = scenes_.empty() ? nullptr : scenes_.back().get();
-  scenes_.push_back(std::make_shared<const PastScene>(last ? std::max(begin, last->begin()) : begin,
-                                                      draft, last));
+  const ros::Time begin = last ? std::max(note.begin, last->begin()) : note.begin;
+  scenes_.push_back(std::make_shared<const PastScene>(begin, *note.draft, last));
   size_ += last ? scenes_.back()->sizeBesideBefore() : scenes_.back()->size();
   // The first one stays until the next has been so for the whole duration.
-  const std::int64_t oldest = nanoseconds(begin) - duration_;
+  const std::int64_t oldest = nanoseconds(note.begin) - duration_;
   while (
       scenes_.size() > max_scenes_ ||
       (scenes_.size() > 1 && (size_ > max_size_ || nanoseconds(scenes_[1]->begin()) <= oldest))) {
@@ -199,7 +224,17 @@ void History::dropFirst() {
   scenes_.pop_front();
 }
 
-std::shared_ptr<const PastScene> History::at(const ros::Time& time) const {
+std::shared_ptr<const PastScene> History::at(const ros::Time& time) {
+  const auto lock = remembered();
+  return latestAt(time);
+}
+
+ros::Time History::begin() {
+  const auto lock = remembered();
+  return scenes_.empty() ? ros::Time() : scenes_.front()->begin();
+}
+
+std::shared_ptr<const PastScene> History::latestAt(const ros::Time& time) const {
   const auto next = std::upper_bound(scenes_.begin(), scenes_.end(), time,
                                      [](const ros::Time& asked, const auto& scene) {
                                        return asked.toNSec() < scene->begin().toNSec();
@@ -207,19 +242,19 @@ std::shared_ptr<const PastScene> History::at(const ros::Time& time) const {
   return next == scenes_.begin() ? nullptr : *std::prev(next);
 }
 
-ros::Time History::begin() const {
-  return scenes_.empty() ? ros::Time() : scenes_.front()->begin();
-}
-
-std::string History::missingAt(const ros::Time& time, const ros::Time& now) const {
+std::string History::find(const ros::Time& time, const ros::Time& now,
+                          std::shared_ptr<const PastScene>& scene) {
+  const auto lock = remembered();
+  scene = time.toNSec() > now.toNSec() ? nullptr : latestAt(time);
   std::ostringstream text;
   text << "scene_time is " << time << ", but ";
   if (!keeps()) {
     text << "past scenes are not remembered: set ~history, or give 0 for now";
   } else if (now.isZero()) {
     text << "the ROS clock has not started: publish /clock";
-  } else if (!at(time) || time.toNSec() > now.toNSec()) {
-    text << "scenes are known from " << begin() << " to " << now
+  } else if (!scene) {
+    text << "scenes are known from " << (scenes_.empty() ? ros::Time() : scenes_.front()->begin())
+         << " to " << now
          << ", now: ask for one of these, for 0 (now), or raise ~history, ~max_past_scenes or "
             "~max_history_memory";
   } else {

@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,7 +73,9 @@ class PastScene {
 
 /// Keeps what was so in the last Parameters::history seconds, in at most max_past_scenes scenes and
 /// max_history_memory.
-/// Not thread safe.
+/// follow(), add() and clear() are called with a lock that others wait for: one at a time. They
+/// only note what is to be remembered. The other functions may be called from any thread, and
+/// remember that first.
 class History {
  public:
   explicit History(const Parameters& parameters);
@@ -82,25 +86,43 @@ class History {
   /// way, each when it ended and not when somebody looked. Does nothing where nothing is kept.
   void follow(BoxTracker& tracker, const ros::Time& now);
   /// What the draft says is so from `begin` on, or, if that is earlier, from when the last one was.
-  void add(const ros::Time& begin, const Draft& draft);
+  void add(const ros::Time& begin, Draft draft);
   void clear();
 
+  /// Does what was noted, so that it need not wait for a question.
+  void remember();
   /// What was so at `time`; null before the first scene that is kept.
-  std::shared_ptr<const PastScene> at(const ros::Time& time) const;
+  std::shared_ptr<const PastScene> at(const ros::Time& time);
   /// From when on something is kept.
-  ros::Time begin() const;
-  /// A sentence that says which times there are, where `time` is none of them; else empty.
-  std::string missingAt(const ros::Time& time, const ros::Time& now) const;
+  ros::Time begin();
+  /// Finds what was so at `time`.
+  /// @return an empty string, or a sentence that says which times there are.
+  std::string find(const ros::Time& time, const ros::Time& now,
+                   std::shared_ptr<const PastScene>& scene);
 
  private:
+  struct Note {
+    ros::Time begin;
+    std::optional<Draft> draft;  ///< none: all is forgotten
+  };
+
   void dropFirst();
   void addIfNew(BoxTracker& tracker, const ros::Time& begin);
+  void note(Note&& note);
+  std::unique_lock<std::mutex> remembered();
+  void remember(const Note& note);
+  std::shared_ptr<const PastScene> latestAt(const ros::Time& time) const;
 
   const std::int64_t duration_;  ///< [ns]
   const std::size_t max_scenes_;
   const std::size_t max_size_;  ///< [bytes]
+  std::uint64_t last_id_ = 0;   ///< of what was noted; 0: nothing
+
+  std::mutex scenes_mutex_;  ///< locked before notes_mutex_
   std::deque<std::shared_ptr<const PastScene>> scenes_;
   std::size_t size_ = 0;  ///< [bytes] of all: the first by itself, each beside the one before
+  std::mutex notes_mutex_;
+  std::vector<Note> notes_;
 };
 
 }  // namespace box_query

@@ -85,7 +85,7 @@ struct SceneMonitor::Impl {
   std::atomic<bool> tf_wanted{false};  ///< transforms ring the bell
   Transforms transforms;
 
-  std::timed_mutex mutex;  ///< guards the next four
+  std::timed_mutex mutex;  ///< guards the next four; of the history, what is noted
   BoxTracker tracker;
   std::vector<Succession> successions;  ///< of the publishers of each topic
   ros::Time now;                        ///< when last looked at
@@ -193,6 +193,7 @@ void SceneMonitor::Impl::receive(std::size_t topic, AnyBoxMessage& message) {
     history.follow(tracker, now);
     tf_wanted = tracker.isWaiting();
   }
+  history.remember();
   bell.ring();
   const std::string& name = parameters.box_topics[topic].topic;
   if (!problem.empty()) {
@@ -290,6 +291,7 @@ void SceneMonitor::Impl::tick() {
     tf_wanted = tracker.isWaiting();
     boxes = tracker.boxesVersion();
   }
+  history.remember();
   builder.buildAhead();
   if (boxes != announced_boxes) {
     announced_boxes = boxes;
@@ -340,16 +342,18 @@ SnapshotPtr SceneMonitor::watchedScene() {
 }
 
 std::string SceneMonitor::sceneAt(const ros::Time& time, SnapshotPtr& scene) {
-  std::unique_lock<std::timed_mutex> lock(impl_->mutex);
-  impl_->noticeTime();
-  const std::string missing = impl_->history.missingAt(time, impl_->now);
-  if (!missing.empty()) {
-    return missing;
+  ros::Time now;
+  {
+    const std::lock_guard<std::timed_mutex> lock(impl_->mutex);
+    impl_->noticeTime();
+    now = impl_->now;
   }
-  const auto past = impl_->history.at(time);
-  lock.unlock();
-  scene = impl_->builder.restore(*past);
-  return "";
+  std::shared_ptr<const PastScene> past;
+  const std::string missing = impl_->history.find(time, now, past);
+  if (missing.empty()) {
+    scene = impl_->builder.restore(*past);
+  }
+  return missing;
 }
 
 SnapshotPtr SceneMonitor::sceneById(std::uint64_t id) const {

@@ -4,10 +4,12 @@
 #include "unit/answer_fixture.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <iostream>
 #include <map>
 #include <new>
+#include <thread>
 #include <tuple>
 
 #include <gtest/gtest.h>
@@ -16,7 +18,7 @@
 namespace {
 
 // Bytes that are allocated by operator new, with what malloc adds to them.
-std::size_t allocated = 0;
+std::atomic<std::size_t> allocated{0};
 
 }  // namespace
 
@@ -96,7 +98,7 @@ Parameters keeping(double seconds, int scenes) {
   return parameters;
 }
 
-std::uint64_t idAt(const History& history, const ros::Time& time) {
+std::uint64_t idAt(History& history, const ros::Time& time) {
   const auto scene = history.at(time);
   return scene ? scene->id() : 0;
 }
@@ -192,6 +194,34 @@ TEST(History, RestoresBoxesOfOneName) {
   expectSame(*history.at(ros::Time(2))->restored(), draft);
 }
 
+TEST(History, IsAskedWhileMoreIsNoted) {
+  History history(keeping(1000, 5));
+  constexpr unsigned kScenes = 300;
+  std::atomic<unsigned> noted{0};
+  std::thread noting([&] {
+    for (unsigned i = 1; i <= kScenes; ++i) {
+      history.add(ros::Time(i, 0), draftOf({}, i));
+      noted = i;
+    }
+  });
+  std::size_t found = 0;
+  while (noted < kScenes || found == 0) {
+    const unsigned now = noted;
+    if (now == 0) {
+      continue;
+    }
+    std::shared_ptr<const PastScene> scene;
+    if (history.find(ros::Time(now, 0), ros::Time(kScenes, 0), scene).empty()) {
+      EXPECT_EQ(scene->id(), now) << "what was noted is known";
+      ++found;
+    } else {
+      EXPECT_GT(history.begin(), ros::Time(now, 0)) << "five more may have come meanwhile";
+    }
+  }
+  noting.join();
+  EXPECT_EQ(idAt(history, ros::Time(kScenes, 0)), kScenes);
+}
+
 TEST(KeptScenes, RestoresEachPastSceneOnce) {
   Parameters parameters;
   parameters.kept_scenes = 3;  // with the latest
@@ -221,6 +251,7 @@ std::size_t bytesOfScene(int moved, bool all_again) {
   History history(keeping(1000, 1000));
   World world = thousand();
   history.add(ros::Time(1), draftOf(world, 1));
+  history.remember();
   const std::size_t before = allocated;
   for (int step = 1; step <= kScenes; ++step) {
     for (int i = 0; i < 1000; ++i) {
@@ -230,6 +261,7 @@ std::size_t bytesOfScene(int moved, bool all_again) {
       entry.stamp = moves || all_again ? ros::Time(1 + step) : entry.stamp;
     }
     history.add(ros::Time(1 + step), draftOf(world, 1 + std::uint64_t(step)));
+    history.remember();
   }
   return (allocated - before) / kScenes;
 }
@@ -251,6 +283,7 @@ TEST(HistoryMemory, IsBounded) {
         world[Key("/boxes", "rack", (i + 7 * step) % 1000)].box.center.y() += 1.0;
       }
       history.add(ros::Time(step), draftOf(world, std::uint64_t(step)));
+      history.remember();
       largest = std::max(largest, allocated - start - before);
     }
     EXPECT_LT(largest, 1100000U);
@@ -262,6 +295,7 @@ TEST(HistoryMemory, IsBounded) {
     history.clear();
     for (int step = 101; step <= 103; ++step) {
       history.add(ros::Time(step), draftOf(world, std::uint64_t(step)));
+      history.remember();
     }
     EXPECT_EQ(history.begin(), ros::Time(101)) << "none of what was cleared counts";
   }
