@@ -27,7 +27,7 @@ bq_packages() {
       python3-geometry-msgs python3-visualization-msgs tf2-tools ;;
     debian/viewer) echo rviz ;;
     debian/test) echo librostest-dev python3-rosbag python3-rostest libnodeletlib-tools ;;
-    debian/checks) echo catkin-lint clang-format cppcheck ;;
+    debian/checks) echo catkin-lint clang clang-format clang-tidy cppcheck ;;
     noetic/build) echo ros-noetic-catkin ros-noetic-roscpp ros-noetic-tf2 ros-noetic-tf2-ros \
       ros-noetic-std-msgs ros-noetic-geometry-msgs ros-noetic-visualization-msgs \
       ros-noetic-message-generation ros-noetic-message-runtime ros-noetic-nodelet ros-noetic-pluginlib \
@@ -35,7 +35,7 @@ bq_packages() {
     noetic/demo) echo ros-noetic-roslaunch ros-noetic-rosservice ros-noetic-rospy ;;
     noetic/viewer) echo ros-noetic-rviz ;;
     noetic/test) echo ros-noetic-rosbag ros-noetic-rostest ;;
-    noetic/checks) echo python3-catkin-lint clang-format cppcheck ;;
+    noetic/checks) echo python3-catkin-lint clang clang-format clang-tidy cppcheck ;;
   esac
 }
 

@@ -119,7 +119,7 @@ bool isKernelChoiceRefused() noexcept;
 class MaxRanges {
  public:
   /// The same for all of them.
-  MaxRanges(double same) : same_(same) {}
+  MaxRanges(double same) : same_(same) {}  // NOLINT(google-explicit-constructor): ranges may be one
   /// An array with one for each ray, which outlives this.
   explicit MaxRanges(const double* each) : each_(each) {}
 

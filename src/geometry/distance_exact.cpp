@@ -11,7 +11,7 @@ namespace {
 /// Signed excess of the point at t over the slab of an axis, times t.den.
 Dyadic excess(const Slabs& slabs, std::size_t axis, const Parameter& t) {
   const Dyadic x = slabs.direction[axis] * t.num;
-  const Dyadic over = x - slabs.above[axis] * t.den;
+  Dyadic over = x - slabs.above[axis] * t.den;
   if (over.sign() > 0) {
     return over;
   }

@@ -18,8 +18,8 @@ constexpr std::size_t kRaysAtOnce = 128;
 
 Ray rayIn(const Context& context, const geometry_msgs::Point& origin,
           const geometry_msgs::Vector3& direction, const Field& field) {
-  const Ray ray = {context.frame.pointIn(fromMessage(origin)),
-                   context.frame.directionIn(fromMessage(direction))};
+  Ray ray = {context.frame.pointIn(fromMessage(origin)),
+             context.frame.directionIn(fromMessage(direction))};
   if (!context.frame.same() && (!isValid(ray) || ray.direction.isZero(0))) {
     refuse(field, "or its origin overflows or vanishes in frame " + context.snapshot.frame +
                       ": give numbers nearer to 1");

@@ -17,8 +17,8 @@ constexpr std::size_t kSegmentsAtOnce = 128;
 
 Segment segmentIn(const Context& context, const geometry_msgs::Point& start,
                   const geometry_msgs::Point& end, const Field& field) {
-  const Segment segment = {context.frame.pointIn(fromMessage(start)),
-                           context.frame.pointIn(fromMessage(end))};
+  Segment segment = {context.frame.pointIn(fromMessage(start)),
+                     context.frame.pointIn(fromMessage(end))};
   if (!context.frame.same() && !isValid(segment)) {
     refuse(field, "or the end of its segment overflows in frame " + context.snapshot.frame +
                       ": give smaller numbers");

@@ -91,7 +91,7 @@ struct BoxChange {
 
   std::size_t rejected() const;
   /// Counts `boxes` bad ones, the first of which is `box_id`.
-  void reject(Rejection why, std::size_t boxes, const std::string& detail, std::int64_t box_id);
+  void reject(Rejection why, std::size_t count, const std::string& detail, std::int64_t box_id);
   /// The only door for boxes: checks one, halves its `size` (full sides [m]) and appends it, or
   /// rejects it. A half is exact.
   void add(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,

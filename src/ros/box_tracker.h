@@ -111,7 +111,7 @@ class BoxTracker {
   void overflow(std::size_t topic, const BoxChange& change);
   void noteStamp(const ros::Time& stamp, const ros::Time& now);
   const std::optional<FramePose>& pose(const WaitingList::Place& place);
-  void draftTopic(std::size_t topic, Draft& draft);
+  void draftTopic(std::size_t index, Draft& draft);
   static std::string unheardSentence(const Topic& topic);
   std::string missingSentence(std::size_t topic) const;
 

@@ -38,7 +38,7 @@ class Diagnostics {
   void run();
   void look();
   void describeScene(Status& status) const;
-  void describeTopic(std::size_t topic, Status& status);
+  void describeTopic(std::size_t index, Status& status);
   void describeWork(Status& status);
 
   /// Of what has been counted so far, since the look before. [1/s]

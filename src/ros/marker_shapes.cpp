@@ -260,6 +260,7 @@ std::vector<Marker> boxMarkers(const Snapshot& snapshot, const ros::Time& now,
 
 std::vector<MarkerName> namesOf(const std::vector<Marker>& markers) {
   std::vector<MarkerName> names;
+  names.reserve(markers.size());
   for (const Marker& m : markers) {
     names.push_back({m.ns, m.id});
   }

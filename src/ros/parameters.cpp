@@ -234,7 +234,7 @@ Parameters Parameters::fromRos(const ros::NodeHandle& private_nh) {
   XmlRpcValue values;
   private_nh.getParam(private_nh.getNamespace(), values);
   std::vector<std::string> unknown;
-  const Parameters parameters = fromValues(values, private_nh.getNamespace(), unknown);
+  Parameters parameters = fromValues(values, private_nh.getNamespace(), unknown);
   for (const std::string& name : unknown) {
     ROS_WARN_STREAM("parameter " << name
                                  << " is not known, and ignored: see box_query_node --help");

@@ -22,7 +22,7 @@ Extent extentOf(const PreparedBox& box);
 
 /// Sets the bounds of a box relative to the center of its scene.
 /// @return whether the kernels may take it: all of it is near enough
-bool findBounds(const Extent& extent, const double* center, FloatBounds& bounds);
+bool findBounds(const Extent& r, const double* center, FloatBounds& bounds);
 
 /// @pre the box is not kExactOnly
 kernels::BoxRecord recordOf(const PreparedBox& box);

@@ -48,6 +48,7 @@ class BoxTree {
   kernels::SceneView view() const;
 
   /// Boxes whose numbers are out of the range of the kernels, by their number.
+  // NOLINTNEXTLINE(readability-identifier-naming): as the field
   const std::vector<std::uint32_t>& left_out() const { return left_out_; }
 
  private:

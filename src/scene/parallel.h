@@ -10,10 +10,8 @@ namespace box_query {
 /// What several threads do at once, each with an index range of its own.
 class ParallelWork {
  public:
+  virtual ~ParallelWork() = default;
   virtual void run(std::size_t begin, std::size_t end) noexcept = 0;
-
- protected:
-  ~ParallelWork() = default;
 };
 
 /// Calls run() for ranges that make up [0, count), on up to `threads` threads at once, and returns

@@ -48,6 +48,7 @@ void TreePartition::cut(const ItemRange& range, std::size_t budget, std::size_t 
   const ItemRange left{range.begin, middle};
   const ItemRange right{middle, range.end};
   const double share = static_cast<double>(left.size()) / static_cast<double>(range.size());
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): no number here is negative
   const auto fair = static_cast<std::size_t>(share * static_cast<double>(budget) + 0.5);
   const std::size_t least = needed(left.size());
   const std::size_t most = budget - needed(right.size());
@@ -101,6 +102,7 @@ std::size_t TreePartition::split(const ItemRange& range, std::size_t fallback,
     ++counts[bin];
   }
   const auto cost = [](const FloatBounds& b, std::size_t n) {
+    // NOLINTNEXTLINE(bugprone-integer-division): whole leaves
     return n == 0 ? 0.0F : b.area() * static_cast<float>((n + kSlots - 1) / kSlots);
   };
   std::array<float, kBins> right_cost{};

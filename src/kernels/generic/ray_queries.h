@@ -59,7 +59,7 @@ struct ClosestVisit {
     }
   }
 
-  void dropLater() {
+  void dropLater() const {
     int kept = 0;
     for (int i = 0; i < found->count; ++i) {
       if (found->candidates[i].enter_lo <= bound) {

@@ -44,8 +44,10 @@ static bool visitList(const SceneView& view, FloatRay& ray, Work& work, Visit& v
   std::uint64_t met[kRootWords] = {0, 0};
   if (ray.for_blocks) {
     work.nodes += (view.boxes_in_blocks + kSlots - 1) / kSlots;
+    // NOLINTBEGIN(misc-redundant-expression): with AVX-512 the lanes of a block are sixteen
     met[0] = view.boxes_in_blocks > 8 ? meetsBlocks<BlockLanes>(view, ray, nears)
                                       : meetsBlocks<Float8>(view, ray, nears);
+    // NOLINTEND(misc-redundant-expression)
   } else {
     const Level& list = view.levels[0];
     work.nodes += list.nodes;
