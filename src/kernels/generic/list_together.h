@@ -255,8 +255,7 @@ template <typename Ask>
 static void askTogether(const SceneView& view, const RayQueries& queries, const Delivery& to) {
   if (view.depth == 1) {
     searchList<Ask>(view, queries, to);
-  } else if (view.depth > 2 && view.levels[0].nodes <= kLargestNumber / kSlots) {
-    // (In a tree of two levels each by itself is as fast.)
+  } else if (view.depth > 1 && view.levels[0].nodes <= kLargestNumber / kSlots) {
     searchTree<Ask>(view, queries, to);
   } else {
     for (std::size_t i = 0; i < queries.count; ++i) {

@@ -145,8 +145,9 @@ static inline bool prepareInDouble(const SceneView& view, const RayQuery& query,
 }
 
 /// Prepares a ray for the boxes of a scene.
+/// @param in_stretches whether it goes down the tree a stretch at a time until its end
 [[gnu::always_inline]] static inline Outcome prepare(const SceneView& view, const RayQuery& query,
-                                                     Ray& ray) {
+                                                     Ray& ray, bool in_stretches) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const RayParts parts = partsOf(view, query);
   const auto& [origin, direction, size, relative, scale] = parts;
@@ -172,7 +173,7 @@ static inline bool prepareInDouble(const SceneView& view, const RayQuery& query,
                         all4(bounds::kFloatUnderflow) * magnitude(inverse));
   double begin = 0.0;
   double end = rough_end * f.scale * bounds::kUp;
-  const bool has_stretches = view.depth > 2 && end > firstStretch(view);
+  const bool has_stretches = in_stretches && end > firstStretch(view);
   if (has_stretches || signs3(is_flat) != 0) {
     // Clipped to the bounds of the scene, for as few stretches as can be, and so that the end is
     // finite where planes are moved by it.

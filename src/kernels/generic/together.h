@@ -177,7 +177,7 @@ static void searchTree(const SceneView& view, const RayQueries& queries, const D
         c.number = next++;
         c.query = queries[c.number];
         c.gave_up = false;
-        const Outcome outcome = begin(view, c.query, c.found, c.ray);
+        const Outcome outcome = begin(view, c.query, c.found, c.ray, true);
         if (outcome == Outcome::kReady) {
           c.visit = Ask::visitOf(view, c);
           c.begin = c.inFloat().begin_s;
