@@ -56,9 +56,10 @@ int main(int argc, char** argv) {
     waitForMaster();
     const ros::NodeHandle keeps_ros_alive;
     Measured measured = askAndCheck(seconds, 50);
+    print(measured, std::cout);
+    std::cout.flush();
     measured.beside_message = askBesideMessage(1000000);
     measured.beside_batch = askBesideBatch(1000000);
-    print(measured, std::cout);
     if (bars) {
       std::cout << '\n';
       printBars(barsOf(measured), std::cout);
