@@ -207,15 +207,15 @@ static inline bool prepareInDouble(const SceneView& view, const RayQuery& query,
 /// A ray in float as it is compared with many bounds: read once, since what is written meanwhile
 /// could be the ray for all that the compiler knows.
 struct RayLanes {
-  explicit RayLanes(const FloatRay& ray) : begin(kept16(ray.begin_s)), end(kept16(ray.end_s)) {
-    for (int i = 0; i < 3; ++i) {
-      near_plane[i] = ray.near_side[i] * 3 + i;
-      far_plane[i] = (1 - ray.near_side[i]) * 3 + i;
-      inverse[i] = kept16(ray.inverse[i]);
-      near_shift[i] = kept16(ray.near_shift[i]);
-      far_shift[i] = kept16(ray.far_shift[i]);
-    }
-  }
+  // (Without a loop, which would keep GCC from taking the arrays apart.)
+  [[gnu::always_inline]] explicit RayLanes(const FloatRay& ray)
+      : near_plane{ray.near_side[0] * 3, ray.near_side[1] * 3 + 1, ray.near_side[2] * 3 + 2},
+        far_plane{3 - near_plane[0], 5 - near_plane[1], 7 - near_plane[2]},
+        inverse{kept16(ray.inverse[0]), kept16(ray.inverse[1]), kept16(ray.inverse[2])},
+        near_shift{kept16(ray.near_shift[0]), kept16(ray.near_shift[1]), kept16(ray.near_shift[2])},
+        far_shift{kept16(ray.far_shift[0]), kept16(ray.far_shift[1]), kept16(ray.far_shift[2])},
+        begin(kept16(ray.begin_s)),
+        end(kept16(ray.end_s)) {}
 
   std::ptrdiff_t near_plane[3];  ///< Of Bounds, counted through minimum and maximum.
   std::ptrdiff_t far_plane[3];
@@ -226,9 +226,11 @@ struct RayLanes {
   Kept16 end;
 };
 
-/// The slots whose bounds the ray may meet between its begin and its end, a bit each.
+/// The slots whose bounds the ray may meet between its begin and its end, a bit each. (Inlined, so
+/// that the ray stays in registers.)
 /// @param near where it enters them, too early by at most what the floats cannot tell
-static inline std::uint32_t meets(const Bounds& bounds, const RayLanes& ray, Float16& near) {
+[[gnu::always_inline]] static inline std::uint32_t meets(const Bounds& bounds, const RayLanes& ray,
+                                                         Float16& near) {
   const auto* planes = &bounds.plane[0][0];
   const auto nearPlane = [&](int i) {
     return multiplyAdd(load16(planes[ray.near_plane[i]]), all16(ray.inverse[i]),

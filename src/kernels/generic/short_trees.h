@@ -5,7 +5,8 @@
 constexpr int kNodesAWord = 64 / kSlots;
 constexpr int kRootWords = kMostRootNodes / kNodesAWord;
 
-/// Compares the ray with up to kMostRootNodes nodes. (Inlined, so that the ray stays in registers.)
+/// Compares the ray with up to kMostRootNodes nodes. (Inlined for the same
+/// reason.)
 /// @param nears where it enters each slot, as far as it does
 /// @param met a bit for each slot that it may meet
 [[gnu::always_inline]] static inline void meetsNodes(const Bounds* nodes, int count,
@@ -25,8 +26,9 @@ constexpr int kRootWords = kMostRootNodes / kNodesAWord;
 /// Visits what lies before the end of the ray, of up to four nodes that it was compared with.
 /// @param record record(slot)
 template <typename Record, typename Visit>
-static inline bool visitWord(std::uint64_t met, const float* nears, const FloatRay& ray,
-                             const Record& record, Visit& visit) {
+[[gnu::always_inline]] static inline bool visitWord(std::uint64_t met, const float* nears,
+                                                    const FloatRay& ray, const Record& record,
+                                                    Visit& visit) {
   for (; met != 0; met &= met - 1) {
     const int slot = __builtin_ctzll(met);
     if (nears[slot] <= ray.end_s * static_cast<float>(bounds::kFarther) && !visit(record(slot))) {
