@@ -65,6 +65,9 @@ class BoxTracker {
   /// Whether a topic's or the clock's first message comes first is chance.
   void startClock(const ros::Time& now);
 
+  /// Whether nobody publishes a simulated clock that has started.
+  void setClockGone(bool gone);
+
   Draft draft();
 
   bool isWaiting() const { return !waiting_.empty(); }
@@ -127,6 +130,7 @@ class BoxTracker {
   std::deque<Arrival> arrivals_;                            ///< of the latest messages
   ros::Time newest_stamp_;
   bool unstamped_ = false;  ///< something without a stamp came before the clock started
+  bool clock_gone_ = false;
   std::uint64_t changes_ = 0;
   std::uint64_t moves_ = 0;  ///< of locked frames
   MonitorStatistics counts_;

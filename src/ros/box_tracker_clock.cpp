@@ -77,4 +77,9 @@ void BoxTracker::startClock(const ros::Time& now) {
   ++changes_;
 }
 
+void BoxTracker::setClockGone(bool gone) {
+  changes_ += gone != clock_gone_ ? 1 : 0;
+  clock_gone_ = gone;
+}
+
 }  // namespace box_query

@@ -22,6 +22,7 @@ Draft BoxTracker::draft() {
   draft.snapshot.id = changes_ + 1;
   draft.snapshot.frame = parameters_.fixed_frame;
   draft.snapshot.stamp = newest_stamp_;
+  draft.snapshot.clock_gone = clock_gone_;
   draft.snapshot.topics.resize(topics_.size());
   used_frames_.clear();
   draft.boxes.reserve(drafted_boxes_);

@@ -40,6 +40,7 @@ PastScene::PastScene(const ros::Time& begin, const Draft& draft, const PastScene
       id_(draft.snapshot.id),
       stamp_(draft.snapshot.stamp),
       frame_(draft.snapshot.frame),
+      clock_gone_(draft.snapshot.clock_gone),
       topics_(draft.snapshot.topics) {
   const std::vector<BoxName>& names = draft.snapshot.names;
   for (std::size_t first = 0; first < names.size();) {
@@ -125,6 +126,7 @@ SnapshotPtr PastScene::restored() const {
   snapshot->id = id_;
   snapshot->stamp = stamp_;
   snapshot->frame = frame_;
+  snapshot->clock_gone = clock_gone_;
   snapshot->topics = topics_;
   std::vector<Box> boxes;
   for (const NamespacePtr& one : namespaces_) {

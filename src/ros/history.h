@@ -64,6 +64,7 @@ class PastScene {
   std::uint64_t id_;
   ros::Time stamp_;
   std::string frame_;
+  bool clock_gone_;
   std::vector<TopicState> topics_;
   std::vector<NamespacePtr> namespaces_;
   std::vector<StampRun> stamps_;  ///< whole sets have one

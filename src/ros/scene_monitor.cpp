@@ -37,7 +37,7 @@ using Clock = Bell::Clock;
 /// At the latest after this the worker looks at the clocks and at locked frames by itself.
 constexpr std::chrono::milliseconds kTick(50);
 /// Between looks at who publishes.
-constexpr std::chrono::seconds kPublisherCheck(1);
+constexpr std::chrono::milliseconds kPublisherCheck(500);
 /// [ns] The system clock may be set back by this much; boxes then live that much longer.
 constexpr std::int64_t kClockStep = 1000000000;
 
@@ -65,6 +65,7 @@ struct SceneMonitor::Impl {
   void stop();
 
   void checkPublishers();
+  void checkClock();
   void forgetFormerPublishers();
   void meet(std::size_t topic, const Succession::Connection& connection);
   void receive(std::size_t topic, AnyBoxMessage& message);
@@ -147,6 +148,14 @@ void SceneMonitor::Impl::checkPublishers() {
       });
 }
 
+void SceneMonitor::Impl::checkClock() {
+  const auto there = ros::Time::isSimTime() ? addressesOfPublishers("/clock") : std::nullopt;
+  if (there && there->empty()) {
+    const std::lock_guard<std::timed_mutex> lock(mutex);
+    tracker.setClockGone(!now.isZero());
+  }
+}
+
 /// What the publishers of a topic said before they made way for new ones is forgotten.
 void SceneMonitor::Impl::forgetFormerPublishers() {
   std::unique_lock<std::timed_mutex> lock(mutex);
@@ -155,10 +164,7 @@ void SceneMonitor::Impl::forgetFormerPublishers() {
       lock.unlock();
       const auto there = addressesOfPublishers(parameters.box_topics[topic].topic);
       lock.lock();
-      if (!there) {
-        return;
-      }
-      if (const auto last_word = successions[topic].look(*there)) {
+      if (const auto last_word = there ? successions[topic].look(*there) : std::nullopt) {
         tracker.forgetBefore(topic, *last_word);
         bell.ring();
       }
@@ -223,6 +229,9 @@ void SceneMonitor::Impl::noticeTime() {
   }
   if (now.isZero() && !time.isZero()) {
     tracker.startClock(time);
+  }
+  if (now != time) {
+    tracker.setClockGone(false);
   }
   now = time;
   noticed = nanoseconds(time);
@@ -309,6 +318,7 @@ void SceneMonitor::Impl::watchPublishers() {
     forgetFormerPublishers();
     if (Clock::now() >= publisher_check) {
       checkPublishers();
+      checkClock();
       publisher_check = Clock::now() + kPublisherCheck;
     }
     bell.waitPast(rings, Clock::now() + kTick);

@@ -53,6 +53,11 @@ Completeness Snapshot::completeness(
   Completeness result;
   if (now.isZero()) {  // then lifetimes never end, and nothing grows stale
     result.reason = "The ROS clock has not started: publish /clock, or unset /use_sim_time.";
+  } else if (clock_gone) {
+    std::ostringstream text;
+    text << "Nobody publishes /clock any more, and the time stands at " << now
+         << ": start what publishes it.";
+    result.reason = text.str();
   }
   for (const TopicState& topic : topics) {
     if (matters && !matters(topic.parameters.topic)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ROS clock goes back while boxes come.
+// The ROS clock goes back while boxes come, or stands.
 #include "ros/box_tracker.h"
 
 #include <chrono>
@@ -120,6 +120,21 @@ TEST_F(ClockThatGoesBack, ForgetsWhatWaitedAndWhereABoxWasBefore) {
   learn("other", kBefore, 300.0);
   tracker_.settle(Clock::now());
   EXPECT_EQ(contents(), "1:203 ");
+}
+
+TEST_F(ClockThatGoesBack, IsNotKnownOnceNobodyPublishesIt) {
+  say({boxAt(1, 1, kBefore)});
+  const std::uint64_t before = tracker_.changes();
+  tracker_.setClockGone(false);
+  EXPECT_EQ(tracker_.changes(), before);
+  EXPECT_TRUE(tracker_.draft().snapshot.completeness(kBefore).complete);
+  tracker_.setClockGone(true);
+  EXPECT_GT(tracker_.changes(), before);
+  EXPECT_EQ(tracker_.draft().snapshot.completeness(kBefore).reason,
+            "Nobody publishes /clock any more, and the time stands at 500.000000000: start what "
+            "publishes it.");
+  tracker_.setClockGone(false);
+  EXPECT_TRUE(tracker_.draft().snapshot.completeness(kBefore).complete);
 }
 
 }  // namespace

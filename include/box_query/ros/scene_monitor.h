@@ -71,10 +71,13 @@ struct Snapshot {
   /// Boxes that are where they were, since the last word on them waits for its transform or was
   /// rejected; ascending.
   std::vector<std::size_t> outdated;
+  /// Nobody publishes /clock any more: its time stands, and what grows stale cannot be told.
+  bool clock_gone = false;
 
   /// At ROS time `now`: every required topic heard, none stale, no box waiting or rejected. At time
-  /// 0, before a simulated clock has started, nothing is complete. Where only some topics matter to
-  /// a question, `matters` accepts their names: what the others lack does not count.
+  /// 0, before a simulated clock has started, nothing is complete, nor once its publisher is gone.
+  /// Where only some topics matter to a question, `matters` accepts their names: what the others
+  /// lack does not count.
   Completeness completeness(
       const ros::Time& now,
       const std::function<bool(const std::string& topic)>& matters = nullptr) const;
