@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <string>
 #include <tuple>
+#include <vector>
 
 namespace box_query::load {
 namespace {
@@ -22,6 +24,24 @@ TopicState heard(const std::string& name) {
   state.parameters.topic = name;
   state.heard = true;
   return state;
+}
+
+/// Gives each topic the sentences of a reason that name it, and those that follow them.
+void setProblems(const std::string& reason, std::vector<TopicState>& topics) {
+  for (TopicState& topic : topics) {
+    topic.problem.clear();
+  }
+  TopicState* named = &topics.front();
+  for (std::size_t begin = 0; begin < reason.size();) {
+    const std::size_t next = std::min(reason.find(". ", begin), reason.size() - 1) + 1;
+    const std::string sentence = reason.substr(begin, next - begin);
+    const auto topic = std::find_if(topics.begin(), topics.end(), [&](const TopicState& each) {
+      return sentence.find(each.parameters.topic) != std::string::npos;
+    });
+    named = topic != topics.end() ? &*topic : named;
+    named->problem += (named->problem.empty() ? "" : " ") + sentence;
+    begin = next + 1;
+  }
 }
 
 }  // namespace
@@ -52,7 +72,7 @@ const Snapshot& SceneRebuilder::rebuild(std::uint64_t id, const SceneFacts& fact
   }
   snapshot_.id = id;
   snapshot_.stamp = facts.stamp;
-  snapshot_.topics[0].problem = facts.reason;
+  setProblems(facts.reason, snapshot_.topics);
   std::vector<Box> boxes;
   for (std::size_t index = 0; index < kTopics; ++index) {
     Topic& topic = topics_[index];
