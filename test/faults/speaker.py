@@ -3,7 +3,7 @@
 """A process that publishes until it is killed. It prints the monotonic time of its first message.
 
   boxes TOPIC TYPE FRAME X ID...   unit cubes at X, as a MarkerArray, one Marker (a CUBE_LIST) or, of no box, a String
-  many TOPIC COUNT FRAME HOW       as one CUBE_LIST: with another id each time (flood), once in a while (once), or turned so
+  many TOPIC COUNT FRAME HOW       as one CUBE_LIST: with another id each time (flood), once (once), or turned so
                                    that rays along them look at each (row)
   tf PARENT CHILD X                where CHILD is, now
   clock SECONDS                    /clock from then on, as fast as the wall's
@@ -95,10 +95,11 @@ def main():
     publisher = rospy.Publisher(topic, kind, queue_size=1, latch=role in ('boxes', 'many'))
     publisher.publish(message())
     print(time.monotonic(), flush=True)
-    pause = {'once': 3600.0, 'row': 3600.0}.get(arguments[-1], PERIOD)
+    once = arguments[-1] in ('once', 'row')
     while not rospy.is_shutdown():
-        time.sleep(pause)
-        publisher.publish(message())
+        time.sleep(PERIOD)  # short: a signal to end does not cut it
+        if not once:
+            publisher.publish(message())
 
 
 if __name__ == '__main__':
