@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/box_store.h"
 
+#include "ros/nanoseconds.h"
+
 #include <algorithm>
 #include <cstring>
 #include <utility>
 
 namespace box_query {
 namespace {
-
-std::int64_t nanoseconds(const ros::Time& time) {
-  return static_cast<std::int64_t>(time.toNSec());
-}
 
 /// Boxes that are placed or wait.
 std::size_t boxesOf(const Item& item) {

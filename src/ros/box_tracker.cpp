@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/box_tracker.h"
 
+#include "ros/nanoseconds.h"
 #include "ros/rigid_object.h"
 
 #include <algorithm>
@@ -339,7 +340,7 @@ void BoxTracker::settle(Clock::time_point now) {
 }
 
 void BoxTracker::expire(const ros::Time& now) {
-  if (static_cast<std::int64_t>(now.toNSec()) >= store_.nextExpiry()) {
+  if (nanoseconds(now) >= store_.nextExpiry()) {
     ++changes_;
     counts_.expired_boxes += store_.expire(now);
   }
@@ -362,7 +363,7 @@ std::int64_t BoxTracker::dropTime(std::size_t topic) const {
 }
 
 void BoxTracker::dropIfStale(std::size_t topic, const ros::Time& now) {
-  if (static_cast<std::int64_t>(now.toNSec()) >= dropTime(topic)) {
+  if (nanoseconds(now) >= dropTime(topic)) {
     ++changes_;
     counts_.dropped_boxes += store_.clear(topic);
     topics_[topic].overflow.clear();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What becomes of boxes when the ROS clock starts or goes back.
 #include "ros/box_tracker.h"
+#include "ros/nanoseconds.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -10,10 +11,6 @@ namespace {
 
 /// Messages may overtake those of /clock by so much, until somebody looks.
 constexpr std::chrono::milliseconds kClockLag(200);
-
-std::int64_t nanoseconds(const ros::Time& time) {
-  return static_cast<std::int64_t>(time.toNSec());
-}
 
 /// Whether a stamp is clearly closer to the new time than to the old one.
 bool isOf(const ros::Time& now, const ros::Time& before, const ros::Time& stamp) {

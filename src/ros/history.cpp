@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/history.h"
 
+#include "ros/nanoseconds.h"
+
 #include <algorithm>
 #include <cstring>
 #include <sstream>
@@ -9,10 +11,6 @@
 
 namespace box_query {
 namespace {
-
-std::int64_t nanoseconds(const ros::Time& time) {
-  return static_cast<std::int64_t>(time.toNSec());
-}
 
 /// Numbers that are equal may still be told apart: 0 and -0.
 bool sameBits(const Box& a, const Box& b) {

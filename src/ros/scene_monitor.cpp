@@ -6,6 +6,7 @@
 #include "ros/box_topics.h"
 #include "ros/box_tracker.h"
 #include "ros/history.h"
+#include "ros/nanoseconds.h"
 #include "ros/publishers.h"
 #include "ros/registration.h"
 #include "ros/ros_api.h"
@@ -40,10 +41,6 @@ constexpr std::chrono::milliseconds kTick(50);
 constexpr std::chrono::milliseconds kPublisherCheck(500);
 /// [ns] The system clock may be set back by this much; boxes then live that much longer.
 constexpr std::int64_t kClockStep = 1000000000;
-
-std::int64_t nanoseconds(const ros::Time& time) {
-  return static_cast<std::int64_t>(time.toNSec());
-}
 
 /// The parameters with names as the rest of the program compares them.
 Parameters resolved(const ros::NodeHandle& nh, Parameters parameters) {

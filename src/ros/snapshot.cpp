@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "ros/nanoseconds.h"
+
 #include <box_query/ros/scene_monitor.h>
 
 #include <cmath>
@@ -10,22 +12,20 @@ namespace {
 
 /// ros::Time's own difference throws where it does not fit into a ros::Duration.
 double secondsBetween(const ros::Time& from, const ros::Time& to) {
-  return 1e-9 * static_cast<double>(static_cast<std::int64_t>(to.toNSec()) -
-                                    static_cast<std::int64_t>(from.toNSec()));
+  return 1e-9 * static_cast<double>(nanoseconds(to) - nanoseconds(from));
 }
 
 }  // namespace
 
 bool TopicState::isStale(const ros::Time& now) const {
-  return static_cast<std::int64_t>(now.toNSec()) >= staleAt();
+  return nanoseconds(now) >= staleAt();
 }
 
 std::int64_t TopicState::staleAt() const {
   if (!heard || parameters.timeout <= 0.0) {
     return std::numeric_limits<std::int64_t>::max();
   }
-  return static_cast<std::int64_t>(last_message.toNSec()) + std::llround(parameters.timeout * 1e9) +
-         1;
+  return nanoseconds(last_message) + std::llround(parameters.timeout * 1e9) + 1;
 }
 
 std::string TopicState::missing(const ros::Time& now) const {

@@ -12,7 +12,6 @@
 // Together 9u S and what is left of second order: planes are moved apart by kInLanes S. No product
 // overflows: |plane| and |o| < 2^61, r <= 2^60.
 
-constexpr int kMostNodes = 8;  // of a list
 constexpr float kFlattestInLanes = 0x1p-60F;
 
 struct RaysInLanes {
@@ -169,7 +168,7 @@ class ListSearch {
       store16(shift[1][i], lanes_.shift[1][i]);
     }
     store16(ends, lanes_.end);
-    alignas(64) std::uint32_t nodes[kMostNodes * kSlots + kSlots];
+    alignas(64) std::uint32_t nodes[kMostRootNodes * kSlots + kSlots];
     int count = 0;
     for (std::uint32_t n = 0; n < list.nodes; ++n) {
       Float16 near;
@@ -177,7 +176,7 @@ class ListSearch {
           meets(*view_.around_nodes, static_cast<int>(n), lanes_, near) & fit;
       count = append(bits, n * kSlots, nodes, count);
     }
-    constexpr int kMost = kMostNodes * kSlots * kSlots;
+    constexpr int kMost = kMostRootNodes * kSlots * kSlots;
     alignas(64) std::uint32_t entries[kMost + kSlots];
     alignas(64) float nears[kMost + kSlots];
     int listed = 0;
