@@ -66,6 +66,19 @@ void BoxChange::addHostile(std::int64_t box_id, const Vector3& center,
   }
 }
 
+void BoxChange::addPoints(const WireBox& shape, std::vector<Vector3>&& points) {
+  const OrientedBox box{shape.center, shape.orientation, 0.5 * shape.size};
+  const auto list = std::make_shared<const PointList>(id, box, std::move(points));
+  if (isGood(shape.center, shape.orientation, shape.size) && list->isSurelyWithin(max_coordinate)) {
+    boxes = BoxList(list);
+    return;
+  }
+  for (std::size_t n = 0; n < list->size(); ++n) {
+    const IdentifiedBox one = (*list)[n];
+    add(one.id, one.box.center, one.box.orientation, shape.size);
+  }
+}
+
 const std::vector<BoxSource>& boxSources() {
   static const std::vector<BoxSource> sources = {
       {"visualization_msgs/MarkerArray", "d155b9ce5188fbaf89745847fd5882d7", decodeMarkerArray},

@@ -3,6 +3,7 @@
 /// What a message type of boxes is to the monitor: a name, a checksum and a decoder.
 #pragma once
 
+#include "ros/box_list.h"
 #include "ros/limits.h"
 #include "ros/wire_reader.h"
 
@@ -36,14 +37,6 @@ constexpr std::size_t kRejections = 8;
 /// A few words each, in the order of the enumeration.
 const std::array<const char*, kRejections>& rejectionNames();
 
-struct IdentifiedBox {
-  IdentifiedBox(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
-                const Vector3& half_extents)
-      : id(box_id), box{center, orientation, half_extents} {}
-
-  std::int64_t id;
-  OrientedBox box;
-};
 /// How far the norm of a quaternion may be from 1. Less is taken as it stands.
 constexpr double kNormTolerance = 1e-2;
 
@@ -52,9 +45,6 @@ inline bool isNearUnit(const Quaternion& q) {
   return squared >= (1.0 - kNormTolerance) * (1.0 - kNormTolerance) &&
          squared <= (1.0 + kNormTolerance) * (1.0 + kNormTolerance);
 }
-
-/// Most markers are one box.
-using IdentifiedBoxes = boost::container::small_vector<IdentifiedBox, 1>;
 
 struct RigidObject;
 
@@ -77,14 +67,14 @@ struct BoxChange {
   double max_coordinate;  ///< [m] of its boxes: Limits::coordinate
   Kind kind = Kind::kSet;
   bool whole_namespace = false;  ///< kSet, kRemove: and nothing under another id of its ns
+  bool frame_locked = false;     ///< the boxes move with their frame after `stamp`
   std::string ns;
   std::int64_t id = 0;
   std::string label;
   std::string frame;          ///< of the boxes, without a leading slash
   ros::Time stamp;            ///< 0: none
   std::int64_t lifetime = 0;  ///< [ns] of ROS time from receipt; 0: forever
-  bool frame_locked = false;  ///< the boxes move with their frame after `stamp`
-  IdentifiedBoxes boxes;
+  BoxList boxes;
   std::shared_ptr<const RigidObject> object;  ///< kSet, kAppend: not null if it can be moved
   std::array<std::uint32_t, kRejections> rejections{};  ///< boxes that were not accepted
   std::string problem;                                  ///< what was wrong with the first of them
@@ -96,16 +86,22 @@ struct BoxChange {
   /// rejects it. A half is exact.
   void add(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
            const Vector3& size);
+  /// The same for a box at each of `points`, which are in the frame of `shape`: see PointList.
+  void addPoints(const WireBox& shape, std::vector<Vector3>&& points);
 
  private:
+  bool isGood(const Vector3& center, const Quaternion& orientation, const Vector3& size) const;
   /// The same for a box that is bad.
   void addHostile(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
                   const Vector3& size);
 };
 
+/// Many messages are one change.
+using BoxChanges = boost::container::small_vector<BoxChange, 1>;
+
 /// What a message says.
 struct DecodedMessage {
-  std::vector<BoxChange> changes;
+  BoxChanges changes;
   /// These boxes are all that the topic has: what it said before is gone.
   bool whole = false;
   ros::Time stamp;          ///< of a message without changes; 0: none
@@ -113,11 +109,16 @@ struct DecodedMessage {
   std::string problem;      ///< not empty: the message is refused, and its changes mean nothing
 };
 
+inline bool BoxChange::isGood(const Vector3& center, const Quaternion& orientation,
+                              const Vector3& size) const {
+  return isWithin(max_coordinate, center) && isWithin(max_coordinate, size) && size.x() >= 0.0 &&
+         size.y() >= 0.0 && size.z() >= 0.0 && isNearUnit(orientation);
+}
+
 inline void BoxChange::add(std::int64_t box_id, const Vector3& center,
                            const Quaternion& orientation, const Vector3& size) {
-  if (isWithin(max_coordinate, center) && isWithin(max_coordinate, size) && size.x() >= 0.0 &&
-      size.y() >= 0.0 && size.z() >= 0.0 && isNearUnit(orientation)) {
-    boxes.emplace_back(box_id, center, orientation, 0.5 * size);
+  if (isGood(center, orientation, size)) {
+    boxes.each().emplace_back(box_id, center, orientation, 0.5 * size);
   } else {
     addHostile(box_id, center, orientation, size);
   }

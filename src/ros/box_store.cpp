@@ -4,7 +4,6 @@
 #include "ros/nanoseconds.h"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 namespace box_query {
@@ -13,14 +12,6 @@ namespace {
 /// Boxes that are placed or wait.
 std::size_t boxesOf(const Item& item) {
   return std::max(item.boxes.size(), item.waiting);
-}
-
-/// Bit for bit: no reader of a snapshot could tell them apart.
-bool same(const IdentifiedBoxes& a, const IdentifiedBoxes& b) {
-  static_assert(sizeof(IdentifiedBox) == sizeof(std::int64_t) + 10 * sizeof(double), "no padding");
-  return a.size() == b.size() && (a.empty() || std::memcmp(static_cast<const void*>(a.data()),
-                                                           static_cast<const void*>(b.data()),
-                                                           a.size() * sizeof(IdentifiedBox)) == 0);
 }
 
 }  // namespace
@@ -79,7 +70,7 @@ void BoxStore::place(Word&& word, const std::string& locked_frame) {
   if (word.number == item.latest_word) {
     setMissing(topic, item, 0, item.rejected);
   }
-  if (!same(item.boxes, change.boxes) || item.label != change.label ||
+  if (!item.boxes.isSame(change.boxes) || item.label != change.label ||
       item.locked_frame != locked_frame) {
     ++boxes_revision_;
   }

@@ -57,7 +57,7 @@ struct Item {
   std::string label;
   ros::Time stamp;
   std::string locked_frame;  ///< frame of the boxes if they are locked to it, else empty
-  IdentifiedBoxes boxes;     ///< in the fixed frame, unless locked
+  BoxList boxes;             ///< in the fixed frame, unless locked
 };
 
 /// Keeps the latest placed word of every item, and counts what is missing. Topics do not touch one

@@ -17,18 +17,18 @@ std::string nameOf(const BoxChange& change, std::int64_t box_id) {
 
 /// The name of its first box.
 std::string nameOf(const BoxChange& change) {
-  return nameOf(change, change.boxes.empty() ? change.id : change.boxes.front().id);
+  return nameOf(change, change.boxes.empty() ? change.id : change.boxes.id(0));
 }
 
 /// What a whole set counts for, as BoxStore has it.
-std::size_t sizeOf(const std::vector<BoxChange>& changes) {
+std::size_t sizeOf(const BoxChanges& changes) {
   return std::accumulate(changes.begin(), changes.end(), std::size_t{0},
                          [](std::size_t size, const BoxChange& change) {
                            return size + std::max<std::size_t>(1, change.boxes.size());
                          });
 }
 
-std::size_t countNamespaces(const std::vector<BoxChange>& changes) {
+std::size_t countNamespaces(const BoxChanges& changes) {
   std::set<std::string_view> names;
   for (const BoxChange& change : changes) {
     names.insert(change.ns);
@@ -39,7 +39,7 @@ std::size_t countNamespaces(const std::vector<BoxChange>& changes) {
 /// Gives what is appended its identity, and its boxes theirs.
 void number(BoxChange& change, std::int64_t id) {
   change.id = id;
-  for (IdentifiedBox& box : change.boxes) {
+  for (IdentifiedBox& box : change.boxes.each()) {
     box.id += id * (std::int64_t{1} << 32);
   }
 }
@@ -134,7 +134,7 @@ std::string BoxTracker::setUnheard(std::size_t topic_index, std::size_t publishe
 }
 
 /// Of a whole set: a sentence, or empty.
-std::string BoxTracker::tooMuch(const std::vector<BoxChange>& changes) const {
+std::string BoxTracker::tooMuch(const BoxChanges& changes) const {
   const auto max_boxes = static_cast<std::size_t>(parameters_.max_boxes_per_topic);
   const auto max_namespaces = static_cast<std::size_t>(parameters_.max_namespaces);
   if (sizeOf(changes) <= max_boxes &&
@@ -271,7 +271,7 @@ void BoxTracker::placeAt(const FramePose& pose, Word&& word) {
     return;
   }
   bool near = true;
-  for (IdentifiedBox& box : word.change.boxes) {
+  for (IdentifiedBox& box : word.change.boxes.each()) {
     near = moveBox(pose, parameters_.max_coordinate, box.box) && near;
   }
   if (!near) {
@@ -283,7 +283,7 @@ void BoxTracker::placeAt(const FramePose& pose, Word&& word) {
 }
 
 void BoxTracker::rejectLostBoxes(Word& word) {
-  IdentifiedBoxes& boxes = word.change.boxes;
+  BoxList::Each& boxes = word.change.boxes.each();
   const auto is_lost = [this](const IdentifiedBox& box) {
     return !isNear(parameters_.max_coordinate, box.box.center);
   };

@@ -109,7 +109,7 @@ class BoxTracker {
   /// Rejects the boxes of a word whose transform overflowed.
   void rejectLostBoxes(Word& word);
   void wait(Word&& word);
-  std::string tooMuch(const std::vector<BoxChange>& changes) const;
+  std::string tooMuch(const BoxChanges& changes) const;
   std::string mostOfTopic() const;
   void overflow(std::size_t topic, const BoxChange& change);
   void noteStamp(const ros::Time& stamp, const ros::Time& now);

@@ -50,7 +50,7 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
   struct Row {
     std::int64_t id;
     const Item* item;
-    const OrientedBox* box;
+    std::size_t box;  ///< of the item
   };
   std::vector<Row> rows;  // of one namespace
   for (const auto& [ns, items] : store_.items(index)) {
@@ -60,8 +60,8 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
       if (item.rejected > 0 && bad.empty()) {
         bad = item.problem;
       }
-      for (const IdentifiedBox& box : item.boxes) {
-        rows.push_back({box.id, &item, &box.box});
+      for (std::size_t n = 0; n < item.boxes.size(); ++n) {
+        rows.push_back({item.boxes.id(n), &item, n});
       }
     }
     const auto before = [](const Row& a, const Row& b) { return a.id < b.id; };
@@ -69,7 +69,7 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
       std::stable_sort(rows.begin(), rows.end(), before);
     }
     for (const Row& row : rows) {
-      OrientedBox box = *row.box;
+      OrientedBox box = row.item->boxes[row.box].box;
       if (!row.item->locked_frame.empty()) {
         used_frames_.insert(row.item->locked_frame);
         const std::optional<FramePose>& known = locked_[row.item->locked_frame];

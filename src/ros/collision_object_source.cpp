@@ -68,7 +68,7 @@ void readPrimitives(WireReader& reader, const Limits& limits, Fields& fields, Bo
     message.problem = tooManyBoxes(limits.boxes);
     return;
   }
-  change.boxes.reserve(fields.primitives);
+  change.boxes.each().reserve(fields.primitives);
   fields.object->boxes.reserve(fields.primitives);
   fields.shape_poses.push_back(reader);
   const std::uint32_t poses = reader.count(kPoseSize);

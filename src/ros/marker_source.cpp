@@ -19,12 +19,6 @@ constexpr std::size_t kColorSize = 16;
 /// Lifetimes up to this are forever, as in rviz. [ns]
 constexpr std::int64_t kShortestLifetime = 100000;
 
-/// The n-th box of a list is n * 2^32 + the id of its marker: distinct, and stable as long as the
-/// list keeps its order. The first one, and a CUBE, have the marker's own id.
-std::int64_t boxId(std::int64_t marker_id, std::uint32_t n) {
-  return marker_id + (static_cast<std::int64_t>(n) << 32);
-}
-
 /// What a marker says of all its boxes.
 WireBox readShape(WireReader& reader) {
   WireBox shape = reader.box();
@@ -32,19 +26,6 @@ WireBox readShape(WireReader& reader) {
     shape.orientation.setIdentity();
   }
   return shape;
-}
-
-/// Points are placed by the marker's pose; every box has its orientation and scale. An identity
-/// pose leaves them as they are, to the last bit.
-void addPoints(WireReader& reader, std::uint32_t points, const WireBox& shape, BoxChange& change) {
-  const bool rotated = shape.orientation.vec() != Vector3::Zero();
-  const Eigen::Matrix3d rotation = shape.orientation.normalized().toRotationMatrix();
-  change.boxes.reserve(points);
-  for (std::uint32_t n = 0; n < points; ++n) {
-    const Vector3 point = reader.vector();
-    const Vector3 offset = rotated ? Vector3(rotation * point) : point;
-    change.add(boxId(change.id, n), shape.center + offset, shape.orientation, shape.size);
-  }
 }
 
 /// Appends one marker. `boxes` counts those of the message so far.
@@ -74,7 +55,7 @@ void readMarker(WireReader& reader, const Limits& limits, std::size_t& boxes,
     }
   }
   if (adds && type == Marker::CUBE_LIST) {
-    addPoints(reader, points, shape, change);
+    change.addPoints(shape, reader.vectors(points));
   } else {
     reader.skip(std::uint64_t{points} * kPointSize);
   }

@@ -13,8 +13,7 @@ std::shared_ptr<const RigidObject> rearranged(const RigidObject& object, const B
                                               std::size_t first_shape) {
   const auto result = std::make_shared<RigidObject>(object);
   for (IdentifiedBox& box : result->boxes) {
-    const OrientedBox& shape =
-        move.boxes.at(1 + first_shape + static_cast<std::size_t>(box.id)).box;
+    const OrientedBox& shape = move.boxes[1 + first_shape + static_cast<std::size_t>(box.id)].box;
     box.box.center = shape.center;
     box.box.orientation = shape.orientation;
   }

@@ -9,9 +9,7 @@ namespace {
 /// How many changes back one is looked for: bounds the time that a message of many classes takes.
 constexpr std::ptrdiff_t kRecentChanges = 8;
 
-using Changes = std::vector<BoxChange>;
-
-Changes::reverse_iterator oldestOf(Changes& changes) {
+BoxChanges::reverse_iterator oldestOf(BoxChanges& changes) {
   return changes.rend() -
          std::max(std::ptrdiff_t{0}, changes.rend() - changes.rbegin() - kRecentChanges);
 }
@@ -19,7 +17,7 @@ Changes::reverse_iterator oldestOf(Changes& changes) {
 /// An id that no change of the class has. They are numbered within it, so that one replaces the
 /// like one of the message before even while it waits for its transform. No id is above the place
 /// of its change: where others of the class came long ago, the place is a new one.
-std::int64_t newId(Changes& changes, std::string_view class_name) {
+std::int64_t newId(BoxChanges& changes, std::string_view class_name) {
   const auto oldest = oldestOf(changes);
   const auto last = std::find_if(changes.rbegin(), oldest,
                                  [&](const BoxChange& change) { return change.ns == class_name; });
@@ -57,7 +55,7 @@ void WholeSet::reject(const WireHeader& header, std::string_view class_name, std
 }
 
 BoxChange& WholeSet::changeOf(const WireHeader& header, std::string_view class_name) {
-  Changes& changes = message_.changes;
+  BoxChanges& changes = message_.changes;
   const std::string_view frame = stripSlash(header.frame);
   const auto oldest = oldestOf(changes);
   const auto found = std::find_if(changes.rbegin(), oldest, [&](const BoxChange& change) {
@@ -72,12 +70,14 @@ BoxChange& WholeSet::changeOf(const WireHeader& header, std::string_view class_n
   }
   BoxChange& change = changes.emplace_back(max_coordinate_);
   change.id = id;
-  change.ns = class_name;
-  change.label = class_name;
+  if (!class_name.empty()) {
+    change.ns = class_name;
+    change.label = class_name;
+  }
   change.frame = std::string(frame);
   change.stamp = header.stamp;
   if (changes.size() == 1) {
-    change.boxes.reserve(boxes_);
+    change.boxes.each().reserve(boxes_);
   }
   return change;
 }

@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include <ros/time.h>
 
@@ -22,8 +23,23 @@ struct WireHeader {
   std::string_view frame;  ///< into the bytes, as it stands there
 };
 
+/// As wide as Eigen reads: numbers that were just written one by one would be waited for.
+template <typename Numbers>
+void copyNumbers(const std::uint8_t* bytes, Numbers&& numbers) {
+  std::memcpy(numbers.data(), bytes, static_cast<std::size_t>(numbers.size()) * sizeof(double));
+}
+
 /// geometry_msgs/Pose and, right after it, a geometry_msgs/Vector3 of full sides [m].
 struct WireBox {
+  static constexpr std::size_t kSize = 10 * sizeof(double);
+
+  WireBox() : center(0.0, 0.0, 0.0), orientation(0.0, 0.0, 0.0, 0.0), size(0.0, 0.0, 0.0) {}
+  explicit WireBox(const std::uint8_t* bytes) {
+    copyNumbers(bytes, center);
+    copyNumbers(bytes + 3 * sizeof(double), orientation.coeffs());
+    copyNumbers(bytes + 7 * sizeof(double), size);
+  }
+
   Vector3 center;
   Quaternion orientation;
   Vector3 size;
@@ -111,28 +127,32 @@ class WireReader {
   Vector3 vector() {
     Vector3 value = Vector3::Zero();
     if (const std::uint8_t* bytes = take(kVector)) {
-      copyTo(value, bytes);
+      copyNumbers(bytes, value);
     }
     return value;
   }
 
-  WireBox box() {
-    WireBox value;
-    if (const std::uint8_t* bytes = take(kVector + kQuaternion + kVector)) {
-      copyTo(value.center, bytes);
-      copyTo(value.orientation.coeffs(), bytes + kVector);
-      copyTo(value.size, bytes + kVector + kQuaternion);
-    } else {
-      value = {Vector3::Zero(), {0.0, 0.0, 0.0, 0.0}, Vector3::Zero()};
+  /// So many of them; none if they do not fit.
+  std::vector<Vector3> vectors(std::uint32_t count) {
+    std::vector<Vector3> values;
+    const std::uint8_t* const bytes = take(std::uint64_t{count} * kVector);
+    if (bytes != nullptr && count > 0) {
+      values.resize(count);
+      std::memcpy(static_cast<void*>(values.data()), bytes, count * kVector);
     }
-    return value;
+    return values;
+  }
+
+  WireBox box() {
+    const std::uint8_t* bytes = take(WireBox::kSize);
+    return bytes ? WireBox(bytes) : WireBox();
   }
 
   /// geometry_msgs/Quaternion: x, y, z, w, which is Eigen's own order.
   Quaternion quaternion() {
     Quaternion value(0.0, 0.0, 0.0, 0.0);
     if (const std::uint8_t* bytes = take(kQuaternion)) {
-      copyTo(value.coeffs(), bytes);
+      copyNumbers(bytes, value.coeffs());
     }
     return value;
   }
@@ -140,12 +160,6 @@ class WireReader {
  private:
   static constexpr std::size_t kVector = 3 * sizeof(double);
   static constexpr std::size_t kQuaternion = 4 * sizeof(double);
-
-  /// As wide as Eigen reads: numbers that were just written one by one would be waited for.
-  template <typename Numbers>
-  static void copyTo(Numbers&& numbers, const std::uint8_t* bytes) {
-    std::memcpy(numbers.data(), bytes, static_cast<std::size_t>(numbers.size()) * sizeof(double));
-  }
 
   const std::uint8_t* take(std::uint64_t size) {
     if (size > left_) {

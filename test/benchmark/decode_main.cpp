@@ -162,7 +162,8 @@ void measure(const char* name, const char* type, Message (*make)(int), int boxes
   for (const BoxSource& each : boxSources()) {
     source = std::string(each.type) == type ? &each : source;
   }
-  if (!source || boxesOf(decodeMessage(*source, bytes.data(), bytes.size(), Limits())) !=
+  const Limits limits;  // the node has them from its start
+  if (!source || boxesOf(decodeMessage(*source, bytes.data(), bytes.size(), limits)) !=
                      static_cast<std::size_t>(boxes)) {
     throw std::runtime_error(std::string(type) + " is not decoded as it should be");
   }
@@ -172,8 +173,8 @@ void measure(const char* name, const char* type, Message (*make)(int), int boxes
     ser::deserialize(stream, message);
     return stream.getLength() + std::uint64_t{1};
   };
-  const Pass ours = [&bytes, source] {
-    const DecodedMessage message = decodeMessage(*source, bytes.data(), bytes.size(), Limits());
+  const Pass ours = [&bytes, &limits, source] {
+    const DecodedMessage message = decodeMessage(*source, bytes.data(), bytes.size(), limits);
     return message.problem.size() + 1;
   };
   const auto timing = timeSideBySide({roscpp, ours}, static_cast<std::size_t>(boxes), rounds, 0);

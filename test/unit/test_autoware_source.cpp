@@ -103,7 +103,7 @@ TEST(AutowareSource, TakesAnOrientationThatIsNotGivenAsTheIdentityUnlessItIsReli
   ASSERT_EQ(message.changes.at(0).boxes.size(), 1U);
   EXPECT_EQ(message.changes[0].boxes[0].box.orientation.coeffs(), Quaternion::Identity().coeffs());
   object.pose.orientation.z = 1.0;
-  EXPECT_EQ(decode({object}).changes.at(0).boxes.at(0).box.orientation.z(), 1.0);
+  EXPECT_EQ(decode({object}).changes.at(0).boxes[0].box.orientation.z(), 1.0);
 }
 
 TEST(AutowareSource, RejectsBadBoxesAndKeepsTheRest) {

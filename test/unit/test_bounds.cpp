@@ -50,7 +50,7 @@ class Bounds : public testing::Test {
     parameters.max_namespaces = 2;
     return parameters;
   }
-  void say(std::vector<BoxChange> changes, bool whole = false) {
+  void say(BoxChanges changes, bool whole = false) {
     DecodedMessage message;
     message.changes = std::move(changes);
     message.whole = whole;

@@ -32,7 +32,7 @@ BoxChange boxAt(std::int64_t id, double x, const ros::Time& stamp,
 
 class ClockThatGoesBack : public testing::Test {
  protected:
-  void say(std::vector<BoxChange> changes, const ros::Time& now = kBefore) {
+  void say(BoxChanges changes, const ros::Time& now = kBefore) {
     DecodedMessage message;
     message.changes = std::move(changes);
     tracker_.receive(0, &boxSources().front(), std::move(message), now);

@@ -122,6 +122,39 @@ TEST(VisionSource, TakesArraysWithoutBoxesAsTheEmptySet) {
   }
 }
 
+TEST(VisionSource, FindsASingleBadNumberAmongManyBoxes) {
+  std::size_t found = 0;
+  const auto expectRejected = [&found](const VisionBoundingBox3D& bad, Rejection why) {
+    std::vector<VisionBoundingBox3D> list(5, boxAt(5));
+    list[3] = bad;
+    const BoxChange change = decodeBytes(kBoxes, wire(boxes(list))).changes.at(0);
+    EXPECT_EQ(change.boxes.size(), 4U);
+    EXPECT_EQ(countOf(change, why), 1U) << change.problem;
+    EXPECT_EQ(change.rejected(), 1U);
+    ++found;
+  };
+  for (std::size_t field = 0; field < 10; ++field) {
+    for (const double bad : {kNan, kInf, -kInf}) {
+      VisionBoundingBox3D box = boxAt(5);
+      std::memcpy(reinterpret_cast<char*>(&box) + field * sizeof(double), &bad, sizeof bad);
+      expectRejected(box, Rejection::kNotFinite);
+    }
+  }
+  for (std::size_t field = 7; field < 10; ++field) {
+    VisionBoundingBox3D box = boxAt(5);
+    const double bad = -1e-300;
+    std::memcpy(reinterpret_cast<char*>(&box) + field * sizeof(double), &bad, sizeof bad);
+    expectRejected(box, Rejection::kNegativeSize);
+  }
+  for (const double norm : {0.0, 0.98, 1.02}) {
+    VisionBoundingBox3D box = boxAt(5);
+    box.center.orientation.z = 0.6 * norm;
+    box.center.orientation.w = 0.8 * norm;
+    expectRejected(box, Rejection::kOrientation);
+  }
+  EXPECT_EQ(found, 36U);
+}
+
 TEST(VisionSource, RejectsBadBoxesAndKeepsTheRest) {
   std::vector<VisionBoundingBox3D> list(6, boxAt(5));
   list[1].center.position.z = -kInf;

@@ -38,6 +38,11 @@ TEST(WireReader, ReadsWhatRoscppWrites) {
   const WireHeader header = reader.header();
   EXPECT_EQ(header.stamp, ros::Time(3, 4));
   EXPECT_EQ(header.frame, "map");
+  WireReader ahead = reader;
+  EXPECT_EQ(ahead.vectors(2)[1], Vector3(0.1, 0.2, 0.3));
+  ahead = reader;
+  EXPECT_TRUE(ahead.vectors(4).empty());
+  EXPECT_FALSE(ahead.ok());
   const WireBox box = reader.box();
   EXPECT_EQ(box.center, Vector3(1.0, 2.0, 3.0));
   EXPECT_EQ(box.orientation.coeffs(), Eigen::Vector4d(0.1, 0.2, 0.3, 0.4));
