@@ -206,6 +206,10 @@ class Scene {
   /// Whether every box is farther than `radius` [m] from the segment.
   /// @pre isValid(segment), radius finite and >= 0
   bool isClear(const Segment& segment, double radius, const BoxMask* mask = nullptr) const noexcept;
+  /// The same of `count` segments, 1 for true, of radius 0 several of them under way at once.
+  /// @param clear as many as segments
+  void isClear(const Segment* segments, std::size_t count, std::uint8_t* clear, double radius,
+               const BoxMask* mask = nullptr) const noexcept;
 
   /// The nearest box, by exact distance.
   Clearance clearance(const Segment& segment, const BoxMask* mask = nullptr) const noexcept;

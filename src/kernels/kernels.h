@@ -29,6 +29,8 @@ struct Kernels {
   /// other.
   Together closest_together;
   Together any_together;
+  /// Of segments: their parameter ends at 1.
+  Together any_of_segments_together;
 
   /// Finds all boxes that may be met.
   /// @return whether the component is taken

@@ -128,7 +128,7 @@ using Take = double (*)(void* context, const Found& found);
 
 enum class Answer { kNotTaken, kUndecided, kYes };
 
-/// Rays to ask about together.
+/// Rays, or segments, to ask about together.
 struct RayQueries {
   const double* rays;  ///< origin and direction of each, six numbers, one after the other
   std::size_t count;
@@ -137,8 +137,9 @@ struct RayQueries {
   const std::uint64_t* mask;
 
   double maxRange(std::size_t i) const { return max_ranges[i * range_distance]; }
-  RayQuery operator[](std::size_t i) const {
-    return {rays + 6 * i, rays + 6 * i + 3, false, maxRange(i), mask};
+  /// @param has_end see RayQuery
+  RayQuery query(std::size_t i, bool has_end) const {
+    return {rays + 6 * i, rays + 6 * i + 3, has_end, maxRange(i), mask};
   }
 };
 

@@ -144,9 +144,11 @@ std::vector<std::uint8_t> castAnyEach(const Scene& scene, const std::vector<Ray>
 
 std::vector<std::uint8_t> isClearEach(const Scene& scene, const std::vector<Segment>& segments,
                                       double radius, const BatchOptions& options) {
-  return askEach<std::uint8_t>(segments, options, [&](const Segment& segment) {
-    return std::uint8_t{scene.isClear(segment, radius, options.mask)};
+  std::vector<std::uint8_t> clear(segments.size());
+  forEachCountedPart(segments.size(), options, [&](std::size_t begin, std::size_t end) {
+    scene.isClear(&segments[begin], end - begin, &clear[begin], radius, options.mask);
   });
+  return clear;
 }
 
 std::vector<Clearance> clearanceEach(const Scene& scene, const std::vector<Segment>& segments,

@@ -16,11 +16,44 @@ constexpr std::size_t kQueries = 256;
 
 static_assert(sizeof(Ray) == 6 * sizeof(double), "kernels read the six numbers of rays in a row");
 
-/// Sets all answers to those of rays that meet nothing, and calls take(i, answer, found) for each
-/// ray that may meet something.
-template <typename Impl, typename Answer, typename Take>
-void castTogether(const Impl& scene, kernels::Together together, const Ray* rays, std::size_t count,
-                  Answer* answers, const MaxRanges& max_ranges, const BoxMask* mask, Take&& take) {
+/// As kernels read them.
+class RayNumbers {
+ public:
+  const double* of(const Ray* rays, std::size_t /*count*/) { return rays->origin.data(); }
+};
+
+/// Copied, since the directions are not there.
+class SegmentNumbers {
+ public:
+  const double* of(const Segment* segments, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) {
+      Vector3 direction;
+      rayQuery(segments[k], 0.0, nullptr, direction);
+      for (int i = 0; i < 3; ++i) {
+        numbers_[k][0][i] = segments[k].start[i];
+        numbers_[k][1][i] = direction[i];
+      }
+    }
+    return numbers_[0][0];
+  }
+
+ private:
+  double numbers_[kQueries][2][3];
+};
+
+inline RayNumbers numbersOf(const Ray*) {
+  return {};
+}
+inline SegmentNumbers numbersOf(const Segment*) {
+  return {};
+}
+
+/// Sets all answers to that of rays, or segments, that meet nothing, and calls take(i, answer,
+/// found) for each that may meet something.
+template <typename Impl, typename Linear, typename Answer, typename Take>
+void askTogether(const Impl& scene, kernels::Together together, const Linear* linear,
+                 std::size_t count, Answer* answers, const Answer& miss,
+                 const MaxRanges& max_ranges, const BoxMask* mask, Take&& take) {
   struct Context {
     Take& take;
     std::size_t first;
@@ -32,11 +65,12 @@ void castTogether(const Impl& scene, kernels::Together together, const Ray* rays
     c.is_taken[query] = true;
     c.take(c.first + query, answer, found);
   };
+  auto numbers = numbersOf(linear);
   for (std::size_t first = 0; first < count; first += kQueries) {
     const std::size_t size = std::min(kQueries, count - first);
-    std::fill_n(answers + first, size, Answer());
-    const kernels::RayQueries queries{rays[first].origin.data(), size, max_ranges.from(first),
-                                      max_ranges.distance(),
+    std::fill_n(answers + first, size, miss);
+    const kernels::RayQueries queries{numbers.of(linear + first, size), size,
+                                      max_ranges.from(first), max_ranges.distance(),
                                       mask != nullptr ? mask->words() : nullptr};
     Context context{take, first, {}};
     kernels::Work work;
@@ -55,33 +89,62 @@ void castTogether(const Impl& scene, kernels::Together together, const Ray* rays
   }
 }
 
+/// Whether what the kernels say of a query needs no other look.
+struct Decided {
+  bool is_met;
+  bool is_none;
+
+  Decided(kernels::Answer answer, const kernels::Found* found, const BoxTree& tree)
+      : is_met(answer == kernels::Answer::kYes),
+        is_none(answer == kernels::Answer::kUndecided && found != nullptr && found->count == 0 &&
+                tree.left_out().empty()) {}
+};
+
 }  // namespace
 
 void Scene::cast(const Ray* rays, std::size_t count, Hit* hits, MaxRanges max_ranges,
                  const BoxMask* mask) const noexcept {
-  castTogether(*impl_, impl_->kernels.closest_together, rays, count, hits, max_ranges, mask,
-               [&](std::size_t i, kernels::Answer /*answer*/, const kernels::Found* found) {
-                 hits[i] = impl_->hitOf(rays[i], max_ranges[i], mask, found);
-               });
+  askTogether(*impl_, impl_->kernels.closest_together, rays, count, hits, Hit(), max_ranges, mask,
+              [&](std::size_t i, kernels::Answer /*answer*/, const kernels::Found* found) {
+                hits[i] = impl_->hitOf(rays[i], max_ranges[i], mask, found);
+              });
 }
 
 void Scene::castClosest(const Ray* rays, std::size_t count, ClosestBox* closest,
                         MaxRanges max_ranges, const BoxMask* mask) const noexcept {
-  castTogether(*impl_, impl_->kernels.closest_together, rays, count, closest, max_ranges, mask,
-               [&](std::size_t i, kernels::Answer /*answer*/, const kernels::Found* found) {
-                 closest[i] = impl_->closestOf(rays[i], max_ranges[i], mask, found);
-               });
+  askTogether(*impl_, impl_->kernels.closest_together, rays, count, closest, ClosestBox(),
+              max_ranges, mask,
+              [&](std::size_t i, kernels::Answer /*answer*/, const kernels::Found* found) {
+                closest[i] = impl_->closestOf(rays[i], max_ranges[i], mask, found);
+              });
 }
 
 void Scene::castAny(const Ray* rays, std::size_t count, std::uint8_t* any, MaxRanges max_ranges,
                     const BoxMask* mask) const noexcept {
-  castTogether(*impl_, impl_->kernels.any_together, rays, count, any, max_ranges, mask,
-               [&](std::size_t i, kernels::Answer answer, const kernels::Found* found) {
-                 const bool is_none = answer == kernels::Answer::kUndecided && found != nullptr &&
-                                      found->count == 0 && impl_->tree.left_out().empty();
-                 const bool is_met = answer == kernels::Answer::kYes;
-                 any[i] = is_met || (!is_none && castAny(rays[i], max_ranges[i], mask)) ? 1 : 0;
-               });
+  askTogether(
+      *impl_, impl_->kernels.any_together, rays, count, any, std::uint8_t{0}, max_ranges, mask,
+      [&](std::size_t i, kernels::Answer answer, const kernels::Found* found) {
+        const Decided decided(answer, found, impl_->tree);
+        any[i] =
+            decided.is_met || (!decided.is_none && castAny(rays[i], max_ranges[i], mask)) ? 1 : 0;
+      });
+}
+
+void Scene::isClear(const Segment* segments, std::size_t count, std::uint8_t* clear, double radius,
+                    const BoxMask* mask) const noexcept {
+  if (radius != 0.0) {
+    for (std::size_t i = 0; i < count; ++i) {
+      clear[i] = isClear(segments[i], radius, mask) ? 1 : 0;
+    }
+    return;
+  }
+  askTogether(*impl_, impl_->kernels.any_of_segments_together, segments, count, clear,
+              std::uint8_t{1}, std::numeric_limits<double>::infinity(), mask,
+              [&](std::size_t i, kernels::Answer answer, const kernels::Found* found) {
+                const Decided decided(answer, found, impl_->tree);
+                clear[i] =
+                    !decided.is_met && (decided.is_none || isClear(segments[i], 0.0, mask)) ? 1 : 0;
+              });
 }
 
 }  // namespace box_query

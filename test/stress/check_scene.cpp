@@ -84,7 +84,7 @@ class SceneCheck {
       checkSegment(component.segment());
     }
     checkCastsTogether();
-    checkClearancesTogether();
+    checkSegmentsTogether();
   }
 
  private:
@@ -180,8 +180,8 @@ class SceneCheck {
     }
   }
 
-  /// Clearances of segments together, more than are under way at once, against each alone.
-  void checkClearancesTogether() {
+  /// Segments that are asked about together, more than are under way at once, against each alone.
+  void checkSegmentsTogether() {
     std::vector<Segment> segments;
     while (segments.size() < 20) {
       for (const Sample& component : sample_.components) {
@@ -191,7 +191,9 @@ class SceneCheck {
       }
     }
     std::vector<Clearance> clearances(segments.size());
+    std::vector<std::uint8_t> clear(segments.size());
     scene_.clearance(segments.data(), segments.size(), clearances.data(), mask());
+    scene_.isClear(segments.data(), segments.size(), clear.data(), 0.0, mask());
     for (std::size_t i = 0; i < segments.size(); ++i) {
       component_ = &sample_.components[i / 2 % sample_.components.size()];
       const Clearance alone = scene_.clearance(segments[i], mask());
@@ -200,6 +202,8 @@ class SceneCheck {
                  (c.t == alone.t || c.box == kNoBox) && same(c.on_segment, alone.on_segment) &&
                  same(c.on_box, alone.on_box),
              "clearance together", c.distance, alone.distance);
+      const bool is_clear = scene_.isClear(segments[i], 0.0, mask());
+      expect((clear[i] != 0) == is_clear, "isClear together", clear[i], is_clear);
     }
   }
 

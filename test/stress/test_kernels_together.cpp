@@ -29,6 +29,7 @@ struct Delivered {
   std::vector<std::uint32_t> boxes;
 };
 
+/// @param rays those of segments end at parameter 1
 std::vector<Delivered> ask(kernels::Together together, const kernels::SceneView& view,
                            const std::vector<Ray>& rays, const std::vector<double>& ranges) {
   std::vector<Delivered> all(rays.size());
@@ -157,6 +158,38 @@ TEST_P(KernelTogetherTest, LeavesOpenWhatItCannotTake) {
       EXPECT_EQ(closest[i].times, 1) << i;
       EXPECT_EQ(closest[i].is_known, i != 3 && i != 7 && i != 11) << i;
     }
+  }
+}
+
+TEST_P(KernelTogetherTest, SegmentsEndWhereTheyDo) {
+  for (const std::size_t count : {1, 16, 33, 128, 129, 1300}) {
+    Random random(26, count, 0);
+    const double side = 6.0 * std::cbrt(static_cast<double>(count));
+    const std::vector<Box> boxes = scattered(random, count, 6.0);
+    std::vector<Ray> parts;
+    while (parts.size() < 333) {
+      Ray part = rayAmong(random, side, boxes);
+      part.direction *= random.uniform(0.0, side) / part.direction.norm();
+      parts.push_back(part);
+    }
+    const BoxTree tree(prepareAll(boxes));
+    const std::vector<Delivered> any = ask(GetParam()->any_of_segments_together, tree.view(), parts,
+                                           std::vector<double>(parts.size(), kInf));
+    int met = 0;
+    int ends_before = 0;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const std::vector<double> entries = entriesOf(parts[i], boxes);
+      const double first = *std::min_element(entries.begin(), entries.end());
+      EXPECT_LE(any[i].times, 1);
+      if (first < 1.0 - 1e-9) {
+        ++met;
+        EXPECT_EQ(any[i].times, 1) << "segment " << i << " of " << count << " boxes";
+      } else if (first > 1.0 + 1e-9) {
+        ends_before += first < kInf ? 1 : 0;
+        EXPECT_NE(any[i].answer, kernels::Answer::kYes) << "segment " << i;
+      }
+    }
+    EXPECT_TRUE(count == 1 || (met > 40 && ends_before > 20)) << met << ", " << ends_before;
   }
 }
 

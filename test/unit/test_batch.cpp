@@ -93,9 +93,11 @@ TEST_P(BatchTest, CastsAreThoseOfSingleRays) {
 TEST_P(BatchTest, SegmentsAreThoseOfSingleCalls) {
   constexpr double kRadius = 0.5;
   const auto clear = isClearEach(q_.scene, q_.segments, kRadius, options());
+  const auto missing = isClearEach(q_.scene, q_.segments, 0.0, options());
   const auto nearest = clearanceEach(q_.scene, q_.segments, options());
   const auto blocked = firstBlockageEach(q_.scene, q_.segments, kRadius, options());
   ASSERT_EQ(clear.size(), kQueries);
+  ASSERT_EQ(missing.size(), kQueries);
   ASSERT_EQ(nearest.size(), kQueries);
   ASSERT_EQ(blocked.size(), kQueries);
   std::size_t num_clear = 0;
@@ -108,6 +110,7 @@ TEST_P(BatchTest, SegmentsAreThoseOfSingleCalls) {
     EXPECT_EQ(blocked[i].box, blockage.box);
     EXPECT_EQ(blocked[i].blocked_at, blockage.blocked_at);
     EXPECT_EQ(clear[i] != 0, !blockage.blocked);
+    EXPECT_EQ(missing[i] != 0, one.distance > 0.0);
     num_clear += clear[i];
   }
   EXPECT_GT(num_clear, kQueries / 20);

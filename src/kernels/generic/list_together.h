@@ -29,6 +29,7 @@ static inline double reachOf(const SceneView& view) {
 }
 
 /// @param rays sixteen of them
+template <bool kHaveEnds>
 static inline void prepareLanes(const SceneView& view, const double* rays, Float16 max_range,
                                 RaysInLanes& lanes) {
   const Float16 zero = all16(0.0F);
@@ -56,6 +57,9 @@ static inline void prepareLanes(const SceneView& view, const double* rays, Float
   }
   lanes.end = multiplyAdd(overRoot(max_range, squared), all16(static_cast<float>(bounds::kUp)),
                           all16(static_cast<float>(bounds::kFloatUnderflow)));
+  if constexpr (kHaveEnds) {
+    lanes.end = smaller(lanes.end, all16(1.0F));
+  }
 }
 
 /// The rays that may meet one of sixteen bounds before they end, a bit each.
@@ -89,7 +93,7 @@ class ListSearch {
   void run(std::size_t first, int count) {
     first_ = first;
     begun_ = 0;
-    prepareLanes(view_, raysFrom(first, count), rangesFrom(first, count), lanes_);
+    prepareLanes<Ask::kHaveEnds>(view_, raysFrom(first, count), rangesFrom(first, count), lanes_);
     const std::uint32_t all = (1U << count) - 1;
     const std::uint32_t fit = lanes_.fit & all;
     if (view_.levels[0].nodes == 1) {
@@ -217,7 +221,7 @@ class ListSearch {
 
   void begin(int ray, Companion<Visit>& c) {
     c.number = first_ + static_cast<std::size_t>(ray);
-    c.query = queries_[c.number];
+    c.query = queries_.query(c.number, Ask::kHaveEnds);
     c.gave_up = false;
     c.found.count = 0;
     c.found.work = Work();
@@ -271,4 +275,9 @@ static void closestTogether(const SceneView& view, const RayQueries& queries, De
 static void anyTogether(const SceneView& view, const RayQueries& queries, Deliver deliver,
                         void* context, Work& work) {
   askTogether<AskAny>(view, queries, {deliver, context, work});
+}
+
+static void anyOfSegmentsTogether(const SceneView& view, const RayQueries& queries, Deliver deliver,
+                                  void* context, Work& work) {
+  askTogether<AskAnyOfSegments>(view, queries, {deliver, context, work});
 }

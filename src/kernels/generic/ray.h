@@ -112,10 +112,11 @@ static inline double roughEnd(const RayQuery& query, double scale, const Ray& ra
              : ray.t_end;
 }
 
-/// Prepares what is compared in double.
+/// Prepares what is compared in double. (Inlined, where it is known whether rays have ends.)
 /// @return whether the ray is taken
-static inline bool prepareInDouble(const SceneView& view, const RayQuery& query, const RayParts& p,
-                                   Ray& ray) {
+[[gnu::always_inline]] static inline bool prepareInDouble(const SceneView& view,
+                                                          const RayQuery& query, const RayParts& p,
+                                                          Ray& ray) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   ray.t_inside = 0.0;
   const Double4 is_fit =

@@ -98,6 +98,7 @@ static double giveUp(void* gave_up, const Found& /*found*/) {
 
 /// What is asked of each ray: which box is the closest.
 struct AskClosest {
+  static constexpr bool kHaveEnds = false;
   using Visit = ClosestVisit;
 
   static Visit visitOf(const SceneView& view, Companion<Visit>& c) {
@@ -115,6 +116,7 @@ struct AskClosest {
 
 /// Whether any box is met.
 struct AskAny {
+  static constexpr bool kHaveEnds = false;
   using Visit = AnyVisit;
 
   static Visit visitOf(const SceneView& view, Companion<Visit>& c) {
@@ -127,6 +129,10 @@ struct AskAny {
                          void* context) {
     return any(view, query, found, take, context);
   }
+};
+
+struct AskAnyOfSegments : AskAny {
+  static constexpr bool kHaveEnds = true;
 };
 
 /// Where what is found goes.
@@ -154,7 +160,8 @@ static void askAlone(const SceneView& view, const RayQueries& queries, std::size
                      const Delivery& to) {
   Found found;
   bool gave_up = false;
-  const Answer answer = Ask::askAlone(view, queries[number], found, giveUp, &gave_up);
+  const Answer answer =
+      Ask::askAlone(view, queries.query(number, Ask::kHaveEnds), found, giveUp, &gave_up);
   to.take(number, answer, gave_up, found);
 }
 
@@ -175,7 +182,7 @@ static void searchTree(const SceneView& view, const RayQueries& queries, const D
       Companion<Visit>& c = rays[i];
       while ((under_way & (1U << i)) == 0 && next < queries.count) {
         c.number = next++;
-        c.query = queries[c.number];
+        c.query = queries.query(c.number, Ask::kHaveEnds);
         c.gave_up = false;
         const Outcome outcome = begin(view, c.query, c.found, c.ray, true);
         if (outcome == Outcome::kReady) {
