@@ -26,6 +26,7 @@ Word BoxStore::hear(std::size_t topic_index, BoxChange&& change, const ros::Time
   if (item.first_word == 0) {
     item.first_word = word.number;
   }
+  item.has_earlier = item.has_earlier || item.latest_word != item.placed_word;
   item.latest_word = word.number;
   item.latest_stamp = word.change.stamp;
   item.latest_expiry = word.expiry;
@@ -74,6 +75,8 @@ void BoxStore::place(Word&& word, const std::string& locked_frame) {
       item.locked_frame != locked_frame) {
     ++boxes_revision_;
   }
+  unwanted_ += item.has_earlier ? 1 : 0;
+  item.has_earlier = item.has_earlier && word.number != item.latest_word;
   item.placed_word = word.number;
   item.placed_expiry = word.expiry;
   item.label = std::move(change.label);
@@ -127,6 +130,7 @@ std::size_t BoxStore::clear(std::size_t topic_index) {
   }
   if (!topic.items.empty()) {
     ++boxes_revision_;
+    ++unwanted_;
   }
   topic = Topic();
   last_place_.reset();
@@ -217,6 +221,7 @@ void BoxStore::keepLatest(std::size_t topic_index, const std::function<bool(cons
         continue;
       }
       item.first_word = item.latest_word;
+      ++unwanted_;
       if (item.placed_word < item.latest_word && !item.boxes.empty()) {
         ++boxes_revision_;
         item.boxes.clear();
@@ -284,6 +289,7 @@ void BoxStore::setMissing(Topic& topic, Item& item, std::size_t waiting, std::si
 void BoxStore::forget(Topic& topic, Item& item) {
   setMissing(topic, item, 0, 0);
   topic.size -= item.size;
+  unwanted_ += item.has_earlier || item.latest_word != item.placed_word ? 1 : 0;
   if (!item.boxes.empty()) {
     ++boxes_revision_;
   }

@@ -41,6 +41,7 @@ struct Item {
   std::uint64_t first_word = 0;
   std::uint64_t latest_word = 0;
   std::uint64_t placed_word = 0;  ///< 0: none yet
+  bool has_earlier = false;       ///< words before the latest were not placed: they may wait
   ros::Time latest_stamp;
   std::int64_t latest_expiry = kForever;
   std::int64_t placed_expiry = kForever;
@@ -121,6 +122,8 @@ class BoxStore {
 
   /// Nothing expires before this. [ns] of ROS time
   std::int64_t nextExpiry() const { return next_expiry_; }
+  /// Grows whenever words that may still wait are wanted no more.
+  std::uint64_t unwanted() const { return unwanted_; }
   /// Grows with every change of boxes or names.
   std::uint64_t boxesRevision() const { return boxes_revision_; }
 
@@ -151,6 +154,7 @@ class BoxStore {
   };
   std::optional<Place> last_place_;  ///< of that word; nothing if its item may be gone
   std::int64_t next_expiry_ = kForever;
+  std::uint64_t unwanted_ = 0;
   std::uint64_t boxes_revision_ = 0;
 };
 

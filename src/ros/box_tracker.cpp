@@ -299,7 +299,8 @@ void BoxTracker::rejectLostBoxes(Word& word) {
 
 void BoxTracker::wait(Word&& word) {
   const std::size_t boxes = word.change.boxes.size();
-  if (!waiting_.fits(boxes)) {
+  if (!waiting_.fits(boxes) && purged_ != store_.unwanted()) {
+    purged_ = store_.unwanted();
     waiting_.purge([this](const Word& other) { return store_.wants(other); });
   }
   if (!waiting_.fits(boxes)) {

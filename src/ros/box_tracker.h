@@ -124,6 +124,7 @@ class BoxTracker {
   std::vector<std::size_t> by_name_;  ///< indices of the topics in the order of snapshots
   BoxStore store_;
   WaitingList waiting_;
+  std::uint64_t purged_ = 0;  ///< of the store's unwanted words, those that are not in the list
   std::map<std::string, std::optional<FramePose>> locked_;  ///< latest poses of locked frames
   std::set<std::string> used_frames_;                       ///< of them, those in the draft
   std::size_t drafted_boxes_ = 0;                           ///< in the last draft

@@ -4,6 +4,7 @@
 #include <map>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -152,6 +153,34 @@ TEST(BoxStore, WantsNoWordThatWasDeletedSince) {
   EXPECT_TRUE(store.wants(cleared));
   store.clear(0);
   EXPECT_FALSE(store.wants(cleared));
+}
+
+TEST(BoxStore, TellsWhenWordsThatMayWaitAreWantedNoMore) {
+  BoxStore store(1);
+  std::uint64_t unwanted = store.unwanted();
+  const auto is_news = [&] { return std::exchange(unwanted, store.unwanted()) != unwanted; };
+  const Word first = store.hear(0, boxAt(1), ros::Time(100));
+  const Word second = store.hear(0, boxAt(2), ros::Time(100));
+  const Word other = store.hear(0, boxAt(2, 2), ros::Time(100));
+  EXPECT_TRUE(store.wants(first));
+  EXPECT_FALSE(is_news()) << "a later word may wait longer than the first";
+  store.place(Word(second), "");
+  EXPECT_FALSE(store.wants(first));
+  EXPECT_TRUE(is_news());
+  store.place(Word(other), "");
+  for (double x = 3; x < 9; ++x) {
+    say(store, boxAt(x));
+  }
+  EXPECT_FALSE(is_news()) << "words that are placed at once overtake none";
+  store.hear(0, boxAt(9), ros::Time(100));
+  say(store, boxAt(9, 3));
+  EXPECT_FALSE(is_news());
+  store.remove(0, "a", 3);
+  EXPECT_FALSE(is_news()) << "nothing waits of what is removed";
+  store.remove(0, "a", 1);
+  EXPECT_TRUE(is_news());
+  store.clear(0);
+  EXPECT_TRUE(is_news());
 }
 
 TEST(BoxStore, CountsOnlyTheLatestWordAsRejected) {
