@@ -8,7 +8,6 @@
 #include <utility>
 
 #include <boost/function.hpp>
-#include <boost/make_shared.hpp>
 #include <ros/subscribe_options.h>
 
 namespace box_query {
@@ -17,8 +16,9 @@ BoxTopics::BoxTopics(const ros::NodeHandle& nh, const Parameters& parameters, Re
     : nh_(nh),
       limits_(parameters),
       receive_(std::move(receive)),
-      topics_(parameters.box_topics.size()),
-      spinner_(1, &queue_) {
+      backlog_(parameters.box_topics.size(),
+               static_cast<std::size_t>(parameters.max_backlog_memory) * 1000000),
+      topics_(parameters.box_topics.size()) {
   for (std::size_t topic = 0; topic < topics_.size(); ++topic) {
     topics_[topic].name = parameters.box_topics[topic].topic;
     subscribe(topic);
@@ -26,29 +26,39 @@ BoxTopics::BoxTopics(const ros::NodeHandle& nh, const Parameters& parameters, Re
 }
 
 void BoxTopics::start() {
-  spinner_.start();
+  decoder_ = std::thread([this] { decode(); });
 }
 
 void BoxTopics::stop() {
   for (Topic& topic : topics_) {
-    topic.subscriber.shutdown();  // waits for a callback that runs
+    topic.subscriber.shutdown();
   }
-  spinner_.stop();
+  backlog_.close();
+  decoder_.join();
 }
 
 void BoxTopics::subscribe(std::size_t topic) {
-  // Each message changes what the ones before said, so none may be dropped: the queue is unbounded.
-  // Decoding is faster than the network.
-  constexpr std::uint32_t kUnbounded = 0;
-  const boost::function<void(const boost::shared_ptr<AnyBoxMessage>&)> callback =
-      [this, topic](const boost::shared_ptr<AnyBoxMessage>& message) { receive_(topic, *message); };
+  constexpr std::uint32_t kUnbounded = 0;  // of a queue that is always empty
+  const boost::function<void(const RawMessagePtr&)> callback =
+      [this, topic](const RawMessagePtr& message) { backlog_.add(topic, message); };
   ros::SubscribeOptions options;
-  options.initByFullCallbackType<const boost::shared_ptr<AnyBoxMessage>&>(
-      topics_[topic].name, kUnbounded, callback,
-      [limits = limits_] { return boost::make_shared<AnyBoxMessage>(limits); });
-  options.callback_queue = &queue_;
+  options.initByFullCallbackType<const RawMessagePtr&>(topics_[topic].name, kUnbounded, callback);
+  options.callback_queue = &immediately_;
+  options.allow_concurrent_callbacks = true;  // nobody would call again what is not called at once
   options.transport_hints = ros::TransportHints().tcpNoDelay();
   topics_[topic].subscriber = nh_.subscribe(options);
+}
+
+void BoxTopics::decode() {
+  while (const auto message = backlog_.take()) {
+    const RawMessage& raw = *message->raw;
+    DecodedMessage decoded;
+    decoded.problem = raw.problem;
+    if (raw.source) {
+      decoded = decodeMessage(*raw.source, raw.bytes.get(), raw.size, limits_);
+    }
+    receive_(*message, std::move(decoded));
+  }
 }
 
 // The first publisher pins a subscription of any type to its own type for good, and roscpp refuses

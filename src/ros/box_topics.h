@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "ros/any_box_message.h"
+#include "ros/backlog.h"
+#include "ros/box_source.h"
 
 #include <box_query/ros/parameters.h>
 
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
-#include <ros/callback_queue.h>
+#include <ros/callback_queue_interface.h>
 #include <ros/node_handle.h>
-#include <ros/spinner.h>
 #include <ros/subscriber.h>
 
 namespace box_query {
 
-/// Hears the topics of boxes, on a thread of its own.
+/// Hears the topics of boxes. What roscpp receives goes to a backlog at once; a thread of its own
+/// decodes it.
 class BoxTopics {
  public:
-  using Receive = std::function<void(std::size_t topic, AnyBoxMessage& message)>;
+  using Receive = std::function<void(const Backlog::Message& message, DecodedMessage&& decoded)>;
   using TellUnheard =
       std::function<void(std::size_t topic, std::size_t publishers, const std::string& type)>;
 
@@ -29,7 +31,7 @@ class BoxTopics {
   BoxTopics(const ros::NodeHandle& nh, const Parameters& parameters, Receive receive);
 
   void start();
-  /// Returns when no message is received any more.
+  /// Returns when no message is received any more. Must be called after start().
   void stop();
 
   /// Subscribes anew where that lets a publisher of another type be heard, and tells of every topic
@@ -46,14 +48,25 @@ class BoxTopics {
     bool missing = false;    ///< more publishers were there than were connected
   };
 
+  /// Calls back in the thread that a message comes in: roscpp has nothing left to keep.
+  class Immediately : public ros::CallbackQueueInterface {
+   public:
+    void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t /*owner*/) override {
+      callback->call();
+    }
+    void removeByID(std::uint64_t /*owner*/) override {}
+  };
+
   void subscribe(std::size_t topic);
+  void decode();
 
   ros::NodeHandle nh_;
   const Limits limits_;
   const Receive receive_;
-  ros::CallbackQueue queue_;
+  Immediately immediately_;
+  Backlog backlog_;
   std::vector<Topic> topics_;
-  ros::AsyncSpinner spinner_;
+  std::thread decoder_;
 };
 
 }  // namespace box_query

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <string_view>
 
 namespace box_query {
 namespace {
@@ -18,22 +17,6 @@ std::string nameOf(const BoxChange& change, std::int64_t box_id) {
 /// The name of its first box.
 std::string nameOf(const BoxChange& change) {
   return nameOf(change, change.boxes.empty() ? change.id : change.boxes.id(0));
-}
-
-/// What a whole set counts for, as BoxStore has it.
-std::size_t sizeOf(const BoxChanges& changes) {
-  return std::accumulate(changes.begin(), changes.end(), std::size_t{0},
-                         [](std::size_t size, const BoxChange& change) {
-                           return size + std::max<std::size_t>(1, change.boxes.size());
-                         });
-}
-
-std::size_t countNamespaces(const BoxChanges& changes) {
-  std::set<std::string_view> names;
-  for (const BoxChange& change : changes) {
-    names.insert(change.ns);
-  }
-  return names.size();
 }
 
 /// Gives what is appended its identity, and its boxes theirs.
@@ -102,7 +85,7 @@ void BoxTracker::receive(std::size_t topic_index, const BoxSource* source, Decod
   }
   topic.refusal.clear();
   if (message.whole) {
-    topic.overflow.clear();
+    topic.lost.clear();
   }
   topic.state.heard = true;
   ++topic.state.messages;
@@ -133,39 +116,22 @@ std::string BoxTracker::setUnheard(std::size_t topic_index, std::size_t publishe
   return publishers > 0 ? unheardSentence(topic) : "";
 }
 
-/// Of a whole set: a sentence, or empty.
-std::string BoxTracker::tooMuch(const BoxChanges& changes) const {
-  const auto max_boxes = static_cast<std::size_t>(parameters_.max_boxes_per_topic);
-  const auto max_namespaces = static_cast<std::size_t>(parameters_.max_namespaces);
-  if (sizeOf(changes) <= max_boxes &&
-      (changes.size() <= max_namespaces || countNamespaces(changes) <= max_namespaces)) {
-    return "";
-  }
-  return "it has more than " + mostOfTopic();
-}
-
-std::string BoxTracker::mostOfTopic() const {
-  return std::to_string(parameters_.max_boxes_per_topic) + " boxes or " +
-         std::to_string(parameters_.max_namespaces) +
-         " namespaces; publish fewer, or raise ~max_boxes_per_topic or ~max_namespaces";
-}
-
 void BoxTracker::forgetBefore(std::size_t topic, std::uint64_t word) {
   Topic& former = topics_.at(topic);
-  const bool overflowed = !former.overflow.empty() && former.overflow_word <= word;
-  if (overflowed) {
-    former.overflow.clear();
+  const bool lost = !former.lost.empty() && former.lost_word <= word;
+  if (lost) {
+    former.lost.clear();
   }
   const std::size_t rejected = store_.rejected(topic);
   const std::size_t boxes = store_.forgetBefore(topic, word);
   counts_.dropped_boxes += boxes;
-  changes_ += boxes > 0 || overflowed || store_.rejected(topic) != rejected ? 1 : 0;
+  changes_ += boxes > 0 || lost || store_.rejected(topic) != rejected ? 1 : 0;
 }
 
 void BoxTracker::apply(std::size_t topic, BoxChange&& change, bool whole, const ros::Time& now) {
   if (change.kind == BoxChange::Kind::kClear) {
     store_.clear(topic);
-    topics_[topic].overflow.clear();
+    topics_[topic].lost.clear();
     noteStamp(change.stamp, now);
   } else if (change.kind == BoxChange::Kind::kRemove) {
     if (change.whole_namespace) {
@@ -244,10 +210,10 @@ void BoxTracker::overflow(std::size_t topic, const BoxChange& change) {
   counts_.boxes += boxes;
   counts_.rejected_boxes += boxes;
   counts_.rejections[rejectionNames()[static_cast<std::size_t>(Rejection::kTooMany)]] += boxes;
-  topics_[topic].overflow_word = store_.countWord();
-  topics_[topic].overflow = nameOf(change) + " was rejected: topic " +
-                            parameters_.box_topics[topic].topic + " would have more than " +
-                            mostOfTopic() + ", and delete all of the topic.";
+  topics_[topic].lost_word = store_.countWord();
+  topics_[topic].lost = nameOf(change) + " was rejected: topic " +
+                        parameters_.box_topics[topic].topic + " would have more than " +
+                        mostOfTopic() + ", and delete all of the topic.";
 }
 
 void BoxTracker::place(Word&& word) {
@@ -367,7 +333,7 @@ void BoxTracker::dropIfStale(std::size_t topic, const ros::Time& now) {
   if (nanoseconds(now) >= dropTime(topic)) {
     ++changes_;
     counts_.dropped_boxes += store_.clear(topic);
-    topics_[topic].overflow.clear();
+    topics_[topic].lost.clear();
   }
 }
 

@@ -39,6 +39,9 @@ class BoxTracker {
   /// type is not understood.
   void receive(std::size_t topic, const BoxSource* source, DecodedMessage&& message,
                const ros::Time& now);
+  /// So many messages of the topic were dropped before the one that is received next: until the
+  /// topic is cleared, nobody knows what they said.
+  void lose(std::size_t topic, std::size_t messages, const ros::Time& now);
   /// So many publishers of the topic cannot be heard beside the others; `type` is that of the
   /// publisher that came last, heard or not: the master knows no more.
   /// @return a sentence that warns of it, if it is news.
@@ -86,8 +89,8 @@ class BoxTracker {
     TopicState state;
     std::string refusal;                ///< of its last message; empty if that was accepted
     const BoxSource* source = nullptr;  ///< of that message
-    std::string overflow;  ///< of what it may have; empty until that, and when it is cleared
-    std::uint64_t overflow_word = 0;
+    std::string lost;  ///< what it said and is not kept; empty until that, and when it is cleared
+    std::uint64_t lost_word = 0;
     std::size_t unheard = 0;  ///< publishers that cannot be heard
     std::string latest_type;  ///< of the publisher that came last, if some cannot be heard
   };

@@ -90,8 +90,8 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
 
   if (!topic.refusal.empty()) {
     state.problem = topic.refusal;
-  } else if (!topic.overflow.empty()) {
-    state.problem = topic.overflow;
+  } else if (!topic.lost.empty()) {
+    state.problem = topic.lost;
   } else if (topic.unheard > 0) {
     state.problem = unheardSentence(topic);
   } else if (state.rejected > 0) {

@@ -120,6 +120,7 @@ void Diagnostics::describeWork(Status& status) {
   status.add("messages", counts.messages);
   status.add("messages refused: malformed or too large", counts.malformed_messages);
   status.add("messages refused: unknown type", counts.unknown_type_messages);
+  status.add("messages dropped: too many waited", counts.dropped_messages);
   status.add("boxes received", counts.boxes);
   for (const auto& [reason, boxes] : counts.rejections) {
     status.add("boxes rejected: " + reason, boxes);

@@ -38,6 +38,7 @@ const Entry kNumbers[] = {
     {"max_waiting_boxes", &P::max_waiting_boxes, {0, 1e8, ""}, "boxes that may wait for their transforms at once; more are counted and given up"},
     {"transform_history", &P::transform_history, {1, 3600, "s"}, "transforms that the tf buffer keeps"},
     {"max_boxes_per_message", &P::max_boxes_per_message, {1, 1e8, ""}, "a message with more boxes is refused whole"},
+    {"max_backlog_memory", &P::max_backlog_memory, {1, 1e5, "MB"}, "messages of a topic that wait to be taken in; the oldest go first, the latest stays, and the scene is incomplete until the topic is cleared"},
     {"max_boxes_per_topic", &P::max_boxes_per_topic, {1, 1e8, ""}, "boxes that a topic may have at once; what goes beyond is rejected until the topic is cleared"},
     {"max_namespaces", &P::max_namespaces, {1, 1e6, ""}, "the same of namespaces"},
     {"max_queries_per_call", &P::max_queries_per_call, {1, 1e8, ""}, "a request with more rays or segments is refused"},

@@ -65,7 +65,7 @@ struct SceneMonitor::Impl {
   void checkClock();
   void forgetFormerPublishers();
   void meet(std::size_t topic, const Succession::Connection& connection);
-  void receive(std::size_t topic, AnyBoxMessage& message);
+  void receive(const Backlog::Message& message, DecodedMessage&& decoded);
   bool isBack(const ros::Time& time) const;
   void noticeTime();
   void followClocks();
@@ -119,8 +119,9 @@ SceneMonitor::Impl::Impl(const ros::NodeHandle& node, const Parameters& given)
       history(parameters),
       noticed(nanoseconds(now)),
       builder(parameters, tracker, mutex),
-      topics(node, parameters,
-             [this](std::size_t topic, AnyBoxMessage& message) { receive(topic, message); }) {
+      topics(node, parameters, [this](const Backlog::Message& message, DecodedMessage&& decoded) {
+        receive(message, std::move(decoded));
+      }) {
   topics.start();
   worker = std::thread([this] { work(); });
   watcher = std::thread([this] { watchPublishers(); });
@@ -183,28 +184,37 @@ void SceneMonitor::Impl::meet(std::size_t topic, const Succession::Connection& c
   }
 }
 
-void SceneMonitor::Impl::receive(std::size_t topic, AnyBoxMessage& message) {
-  const std::string problem = message.decoded.problem;
+void SceneMonitor::Impl::receive(const Backlog::Message& message, DecodedMessage&& decoded) {
+  const std::size_t topic = message.topic;
+  const BoxSource* const source = message.raw->source;
+  const std::string problem = decoded.problem;
   const BoxSource* former = nullptr;
-  meet(topic, message.connection);
+  meet(topic, message.raw->connection);
   {
     const std::lock_guard<std::timed_mutex> lock(mutex);
     builder.noteChange();
     noticeTime();
     former = tracker.lastSource(topic);
-    tracker.receive(topic, message.source, std::move(message.decoded), now);
+    tracker.lose(topic, message.dropped, now);
+    tracker.receive(topic, source, std::move(decoded), now);
     history.follow(tracker, now);
     tf_wanted = tracker.isWaiting();
   }
   history.remember();
   bell.ring();
   const std::string& name = parameters.box_topics[topic].topic;
+  if (message.dropped > 0) {
+    ROS_WARN_STREAM_THROTTLE(
+        5.0, "box_query: " << message.dropped << " messages on topic " << name
+                           << " were dropped: they came faster than they could be taken "
+                              "in");
+  }
   if (!problem.empty()) {
     ROS_WARN_STREAM_THROTTLE(
         5.0, "box_query: a message on topic " << name << " was refused: " << problem);
-  } else if (former && message.source != former) {
+  } else if (former && source != former) {
     ROS_WARN_STREAM("box_query: topic " << name << " has changed its type from " << former->type
-                                        << " to " << message.source->type);
+                                        << " to " << source->type);
   }
 }
 

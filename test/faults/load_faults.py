@@ -25,6 +25,27 @@ def fault_flood_without_transform(world, report):
     report.right_again(back.since, 4, 4, 'another publisher took its place')
 
 
+def fault_flood_faster_than_can_be_taken_in(world, report):
+    """Messages of 20,000 markers, of a frame that nobody knows, come from four publishers as fast as they can."""
+    world.start_node(box_topics=['boxes', 'flood'], max_waiting_boxes=20000, waiting_timeout=1.0,
+                     max_backlog_memory=30)
+    world.speak('boxes', 'boxes', 'MarkerArray', 'map', 4, 1, 2)
+    first = world.speak('boxes', 'flood', 'Marker', 'map', 5, 1)
+    world.until(lambda: world.answers(4, 3), 'boxes')
+    first.end()
+    report.begin()
+    flood = [world.speak('torrent', 'flood', 20000, 'nowhere') for _ in range(4)]
+    report.during(world.await_reason('Messages on topic /flood were dropped', '~max_backlog_memory'))
+    report.stays(4, 3, 'incomplete, with all that could be placed', complete=False)
+    time.sleep(3.0)
+    for one in flood:
+        one.end()
+    back = world.speak('boxes', 'flood', 'MarkerArray', 'map', 5, 1, 2)
+    report.right_again(back.since, 4, 4, 'another publisher took its place')
+    report.growth = 128.0
+    report.most = 128.0  # what waits, a message of 4 MB that each connection reads, and one that is taken in
+
+
 def fault_million_boxes(world, report):
     """Messages of a million boxes, as many as are allowed."""
     world.start_node(box_topics=['boxes'])

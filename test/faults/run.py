@@ -21,6 +21,7 @@ class Report:
     def __init__(self, world):
         self.world = world
         self.growth = GROWTH
+        self.most = None  # [MB] that the node may take at any time beside what it had before
         self.before = None
 
     def begin(self):
@@ -45,9 +46,10 @@ class Report:
     def end(self):
         check(self.before is not None, 'the fault never began')
         after = megabytes(self.world.node_pid())
-        print('  resident %.0f MB before, %.0f MB after, at most %.0f MB' %
-              (self.before, after, megabytes(self.world.node_pid(), 'VmHWM')))
+        most = megabytes(self.world.node_pid(), 'VmHWM')
+        print('  resident %.0f MB before, %.0f MB after, at most %.0f MB' % (self.before, after, most))
         check(after < self.before + self.growth, 'memory grew by more than', self.growth, 'MB')
+        check(self.most is None or most < self.before + self.most, 'memory was more than', self.most, 'MB beyond')
 
 
 def find(name):

@@ -5,6 +5,7 @@
   boxes TOPIC TYPE FRAME X ID...   unit cubes at X, as a MarkerArray, one Marker (a CUBE_LIST) or, of no box, a String
   many TOPIC COUNT FRAME HOW       as one CUBE_LIST: with another id each time (flood), once (once), or turned so
                                    that rays along them look at each (row)
+  torrent TOPIC COUNT FRAME        as a MarkerArray, the same again and again as fast as it can
   tf PARENT CHILD X                where CHILD is, now
   clock SECONDS                    /clock from then on, as fast as the wall's
 """
@@ -14,6 +15,7 @@ import math
 import struct
 import sys
 import time
+import warnings
 
 import rospy
 from geometry_msgs.msg import Point, TransformStamped, Vector3
@@ -72,6 +74,17 @@ def many(topic, count, frame, how):
     return topic, Many, Many
 
 
+def torrent(topic, count, frame):
+    array = io.BytesIO()
+    MarkerArray([cube(frame, 1.0, number) for number in range(int(count))]).serialize(array)
+
+    class Torrent(MarkerArray):
+        def serialize(self, buffer):
+            buffer.write(array.getbuffer())
+
+    return topic, Torrent, Torrent
+
+
 def tf(parent, child, x):
     def transform():
         one = TransformStamped(child_frame_id=child)
@@ -91,13 +104,16 @@ def clock(start):
 def main():
     name, role, *arguments = sys.argv[1:]
     rospy.init_node(name, disable_rosout=True)
-    topic, kind, message = {'boxes': boxes, 'many': many, 'tf': tf, 'clock': clock}[role](*arguments)
-    publisher = rospy.Publisher(topic, kind, queue_size=1, latch=role in ('boxes', 'many'))
+    topic, kind, message = {'boxes': boxes, 'many': many, 'torrent': torrent, 'tf': tf, 'clock': clock}[role](*arguments)
+    # Without a queue, of which rospy warns, it waits until the receiver has read each message.
+    warnings.simplefilter('ignore', SyntaxWarning)
+    publisher = rospy.Publisher(topic, kind, queue_size=None if role == 'torrent' else 1, latch=role in ('boxes', 'many'))
     publisher.publish(message())
     print(time.monotonic(), flush=True)
     once = arguments[-1] in ('once', 'row')
     while not rospy.is_shutdown():
-        time.sleep(PERIOD)  # short: a signal to end does not cut it
+        if role != 'torrent':
+            time.sleep(PERIOD)  # short: a signal to end does not cut it
         if not once:
             publisher.publish(message())
 

@@ -152,6 +152,35 @@ TEST_F(Bounds, AreForgottenOnlyWhenTheTopicIsCleared) {
   EXPECT_EQ(reason(), "") << "new publishers begin anew";
 }
 
+TEST_F(Bounds, OfWhatWaitsMakeTheSceneIncompleteUntilTheTopicIsCleared) {
+  const ros::Time now(100);
+  const auto lose_and_say = [&](BoxChanges changes, bool whole) {
+    tracker_.lose(0, 2, now);
+    say(std::move(changes), whole);
+  };
+  say({boxesOf("a", 1, 1)});
+  tracker_.lose(0, 0, now);
+  EXPECT_EQ(reason(), "");
+  lose_and_say({boxesOf("a", 1, 1)}, false);
+  say({boxesOf("a", 1, 1)});
+  EXPECT_EQ(reason(),
+            "Messages on topic boxes were dropped: they came faster than they could be taken in; "
+            "publish less, or raise ~max_backlog_memory, and delete all of the topic.");
+  EXPECT_EQ(tracker_.counts().dropped_messages, 2U);
+  EXPECT_EQ(tracker_.counts().messages, 3U);
+  say({allGone(), boxesOf("a", 1, 1)});
+  EXPECT_EQ(reason(), "");
+  lose_and_say({boxesOf("a", 1, 1)}, true);
+  EXPECT_EQ(reason(), "") << "a whole set says all";
+  lose_and_say({allGone()}, false);
+  EXPECT_EQ(reason(), "");
+  lose_and_say({boxesOf("a", 1, 1)}, false);
+  EXPECT_NE(reason(), "");
+  tracker_.forgetBefore(0, tracker_.lastWord());
+  EXPECT_EQ(reason(), "") << "new publishers begin anew";
+  EXPECT_EQ(tracker_.counts().dropped_messages, 8U);
+}
+
 TEST(NearPlaces, HaveNoNaN) {
   EXPECT_TRUE(isNear(1e7, {1e7, -1e7, 0.0}));
   EXPECT_FALSE(isNear(1e7, {0.0, std::nextafter(1e7, 2e7), 0.0}));

@@ -45,6 +45,10 @@ struct Parameters {
 
   /// Boxes a message may carry; a larger message is refused whole.
   int max_boxes_per_message = 1000000;
+  /// [MB] that messages of one topic take together while they wait to be taken in. Of more, which
+  /// come faster than that, the oldest are dropped, the latest stays, and the scene is incomplete
+  /// until the topic is cleared: by DELETEALL, a whole set, or new publishers.
+  int max_backlog_memory = 100;
   /// Boxes and namespaces that a topic may have at once. What goes beyond is rejected, and the
   /// scene incomplete until the topic is cleared: by DELETEALL, a whole set, or new publishers.
   /// While publishers change, it has the boxes of both for a moment.

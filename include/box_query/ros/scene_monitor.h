@@ -92,7 +92,8 @@ struct MonitorStatistics {
   std::uint64_t messages = 0;
   std::uint64_t malformed_messages = 0;  ///< lengths that do not fit, more boxes than allowed
   std::uint64_t unknown_type_messages = 0;
-  std::uint64_t boxes = 0;  ///< boxes received (added or modified)
+  std::uint64_t dropped_messages = 0;  ///< not among these: too many waited to be taken in
+  std::uint64_t boxes = 0;             ///< boxes received (added or modified)
   std::uint64_t rejected_boxes =
       0;  ///< not finite, negative size, quaternion off unit length, empty frame
   std::map<std::string, std::uint64_t> rejections;  ///< the same, by reason
