@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -88,7 +89,7 @@ class Row {
 
   const std::string& text(const char* column) const {
     const auto found = std::find_if(kColumns.begin(), kColumns.end(),
-                                    [&](const char* name) { return std::string(name) == column; });
+                                    [&](std::string_view name) { return name == column; });
     return fields_[columns_[static_cast<std::size_t>(found - kColumns.begin())]];
   }
 
