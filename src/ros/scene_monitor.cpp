@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The walk: box message -> source -> store -> placement (BoxTracker) -> new Scene -> one pointer
-// swapped (SceneBuilder). Here are the threads: one hears boxes, one hears tf, a worker places what
-// waited and builds ahead, and a watcher asks the master, which may take its time, who publishes.
+// swapped (SceneBuilder). Here is what the threads do that hear boxes and tf, and the worker that
+// places what waited and builds ahead.
 #include "ros/bell.h"
 #include "ros/box_topics.h"
 #include "ros/box_tracker.h"
 #include "ros/history.h"
 #include "ros/nanoseconds.h"
-#include "ros/publishers.h"
+#include "ros/publisher_watch.h"
 #include "ros/registration.h"
-#include "ros/ros_api.h"
 #include "ros/scene_builder.h"
-#include "ros/succession.h"
 #include "ros/transforms.h"
 
 #include <box_query/ros/scene_monitor.h>
@@ -26,9 +24,7 @@
 #include <utility>
 
 #include <ros/console.h>
-#include <ros/init.h>
 #include <ros/names.h>
-#include <ros/this_node.h>
 
 namespace box_query {
 namespace {
@@ -37,8 +33,6 @@ using Clock = Bell::Clock;
 
 /// At the latest after this the worker looks at the clocks and at locked frames by itself.
 constexpr std::chrono::milliseconds kTick(50);
-/// Between looks at who publishes.
-constexpr std::chrono::milliseconds kPublisherCheck(500);
 /// [ns] The system clock may be set back by this much; boxes then live that much longer.
 constexpr std::int64_t kClockStep = 1000000000;
 
@@ -61,10 +55,6 @@ struct SceneMonitor::Impl {
   Impl(const ros::NodeHandle& node, const Parameters& given);
   void stop();
 
-  void checkPublishers();
-  void checkClock();
-  void forgetFormerPublishers();
-  void meet(std::size_t topic, const Succession::Connection& connection);
   void receive(const Backlog::Message& message, DecodedMessage&& decoded);
   bool isBack(const ros::Time& time) const;
   void noticeTime();
@@ -75,18 +65,16 @@ struct SceneMonitor::Impl {
 
   void work();
   void tick();
-  void watchPublishers();
 
   const ros::NodeHandle nh;
   const Parameters parameters;
-  Bell bell;                           ///< for the worker and the watcher
+  Bell bell;                           ///< for the worker
   std::atomic<bool> tf_wanted{false};  ///< transforms ring the bell
   Transforms transforms;
 
-  std::timed_mutex mutex;  ///< guards the next four; of the history, what is noted
+  std::timed_mutex mutex;  ///< guards the next three; of the history, what is noted
   BoxTracker tracker;
-  std::vector<Succession> successions;  ///< of the publishers of each topic
-  ros::Time now;                        ///< when last looked at
+  ros::Time now;  ///< when last looked at
   History history;
 
   std::atomic<std::int64_t> noticed;  ///< `now` for who does not lock [ns]
@@ -97,9 +85,9 @@ struct SceneMonitor::Impl {
   std::uint64_t announced_boxes = 0;  ///< of the worker
 
   std::atomic<bool> stopping{false};
+  PublisherWatch publishers;
   BoxTopics topics;
   std::thread worker;
-  std::thread watcher;
   Registration registration;
 };
 
@@ -113,18 +101,17 @@ SceneMonitor::Impl::Impl(const ros::NodeHandle& node, const Parameters& given)
                    }
                  }),
       tracker(parameters, transforms.buffer()),
-      successions(parameters.box_topics.size(),
-                  Succession(ros::this_node::getName(), ownAddress())),
       now(ros::Time::now()),
       history(parameters),
       noticed(nanoseconds(now)),
       builder(parameters, tracker, mutex),
+      publishers(parameters, tracker, mutex, [this] { bell.ring(); }),
       topics(node, parameters, [this](const Backlog::Message& message, DecodedMessage&& decoded) {
         receive(message, std::move(decoded));
       }) {
   topics.start();
   worker = std::thread([this] { work(); });
-  watcher = std::thread([this] { watchPublishers(); });
+  publishers.start(topics);
 }
 
 /// Ends the threads: only then may anything that they use be destroyed.
@@ -132,56 +119,8 @@ void SceneMonitor::Impl::stop() {
   stopping = true;
   bell.ring();
   worker.join();
-  watcher.join();
+  publishers.stop();
   topics.stop();
-}
-
-void SceneMonitor::Impl::checkPublishers() {
-  topics.checkPublishers(
-      [this](std::size_t topic, std::size_t publishers, const std::string& type) {
-        std::unique_lock<std::timed_mutex> lock(mutex);
-        const std::string warning = tracker.setUnheard(topic, publishers, type);
-        lock.unlock();
-        ROS_WARN_STREAM_COND(!warning.empty(), "box_query: " << warning);
-      });
-}
-
-void SceneMonitor::Impl::checkClock() {
-  const auto there = ros::Time::isSimTime() ? addressesOfPublishers("/clock") : std::nullopt;
-  if (there && there->empty()) {
-    const std::lock_guard<std::timed_mutex> lock(mutex);
-    tracker.setClockGone(!now.isZero());
-  }
-}
-
-/// What the publishers of a topic said before they made way for new ones is forgotten.
-void SceneMonitor::Impl::forgetFormerPublishers() {
-  std::unique_lock<std::timed_mutex> lock(mutex);
-  for (std::size_t topic = 0; topic < successions.size(); ++topic) {
-    if (successions[topic].asks(Clock::now())) {
-      lock.unlock();
-      const auto there = addressesOfPublishers(parameters.box_topics[topic].topic);
-      lock.lock();
-      if (const auto last_word = there ? successions[topic].look(*there) : std::nullopt) {
-        tracker.forgetBefore(topic, *last_word);
-        bell.ring();
-      }
-    }
-  }
-}
-
-/// Notes who publishes when somebody new speaks: by the time of a look it may be gone again.
-void SceneMonitor::Impl::meet(std::size_t topic, const Succession::Connection& connection) {
-  std::unique_lock<std::timed_mutex> lock(mutex);
-  if (successions[topic].isNew(connection)) {
-    lock.unlock();
-    auto connected = connectedPublishers();
-    lock.lock();
-    successions[topic].hear(connection,
-                            connected ? std::move((*connected)[parameters.box_topics[topic].topic])
-                                      : Succession::Addresses(),
-                            tracker.lastWord(), Clock::now());
-  }
 }
 
 void SceneMonitor::Impl::receive(const Backlog::Message& message, DecodedMessage&& decoded) {
@@ -189,7 +128,7 @@ void SceneMonitor::Impl::receive(const Backlog::Message& message, DecodedMessage
   const BoxSource* const source = message.raw->source;
   const std::string problem = decoded.problem;
   const BoxSource* former = nullptr;
-  meet(topic, message.raw->connection);
+  publishers.meet(topic, message.raw->connection);
   {
     const std::lock_guard<std::timed_mutex> lock(mutex);
     builder.noteChange();
@@ -315,20 +254,6 @@ void SceneMonitor::Impl::tick() {
     if (changed) {
       changed();
     }
-  }
-}
-
-void SceneMonitor::Impl::watchPublishers() {
-  Clock::time_point publisher_check = Clock::now();
-  while (!stopping) {
-    const std::uint64_t rings = bell.rings();
-    forgetFormerPublishers();
-    if (Clock::now() >= publisher_check) {
-      checkPublishers();
-      checkClock();
-      publisher_check = Clock::now() + kPublisherCheck;
-    }
-    bell.waitPast(rings, Clock::now() + kTick);
   }
 }
 

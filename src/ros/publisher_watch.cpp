@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ros/publisher_watch.h"
+
+#include "ros/publishers.h"
+#include "ros/ros_api.h"
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <ros/console.h>
+#include <ros/this_node.h>
+#include <ros/time.h>
+
+namespace box_query {
+namespace {
+
+using Clock = Bell::Clock;
+
+/// Between looks at whether former publishers are gone, where somebody new has spoken.
+constexpr std::chrono::milliseconds kSuccessionCheck(50);
+/// Between looks at who publishes.
+constexpr std::chrono::milliseconds kPublisherCheck(500);
+
+}  // namespace
+
+PublisherWatch::PublisherWatch(const Parameters& parameters, BoxTracker& tracker,
+                               std::timed_mutex& mutex, std::function<void()> forgotten)
+    : parameters_(parameters),
+      tracker_(tracker),
+      mutex_(mutex),
+      forgotten_(std::move(forgotten)),
+      successions_(parameters.box_topics.size(),
+                   Succession(ros::this_node::getName(), ownAddress())) {}
+
+void PublisherWatch::start(BoxTopics& topics) {
+  thread_ = std::thread([this, &topics] { run(topics); });
+}
+
+void PublisherWatch::stop() {
+  stopping_ = true;
+  bell_.ring();
+  thread_.join();
+}
+
+void PublisherWatch::meet(std::size_t topic, const Succession::Connection& connection) {
+  std::unique_lock<std::timed_mutex> lock(mutex_);
+  if (!successions_[topic].isNew(connection)) {
+    return;
+  }
+  lock.unlock();
+  auto connected = connectedPublishers();
+  lock.lock();
+  successions_[topic].hear(connection,
+                           connected ? std::move((*connected)[parameters_.box_topics[topic].topic])
+                                     : Succession::Addresses(),
+                           tracker_.lastWord(), Clock::now());
+  lock.unlock();
+  bell_.ring();
+}
+
+void PublisherWatch::run(BoxTopics& topics) {
+  Clock::time_point publisher_check = Clock::now();
+  while (!stopping_) {
+    const std::uint64_t rings = bell_.rings();
+    forgetFormerPublishers();
+    if (Clock::now() >= publisher_check) {
+      checkPublishers(topics);
+      checkClock();
+      publisher_check = Clock::now() + kPublisherCheck;
+    }
+    bell_.waitPast(rings, Clock::now() + kSuccessionCheck);
+  }
+}
+
+void PublisherWatch::checkPublishers(BoxTopics& topics) {
+  topics.checkPublishers(
+      [this](std::size_t topic, std::size_t publishers, const std::string& type) {
+        std::unique_lock<std::timed_mutex> lock(mutex_);
+        const std::string warning = tracker_.setUnheard(topic, publishers, type);
+        lock.unlock();
+        ROS_WARN_STREAM_COND(!warning.empty(), "box_query: " << warning);
+      });
+}
+
+void PublisherWatch::checkClock() {
+  const auto there = ros::Time::isSimTime() ? addressesOfPublishers("/clock") : std::nullopt;
+  if (there && there->empty()) {
+    const std::lock_guard<std::timed_mutex> lock(mutex_);
+    tracker_.setClockGone(!ros::Time::now().isZero());
+  }
+}
+
+void PublisherWatch::forgetFormerPublishers() {
+  std::unique_lock<std::timed_mutex> lock(mutex_);
+  for (std::size_t topic = 0; topic < successions_.size(); ++topic) {
+    if (successions_[topic].asks(Clock::now())) {
+      lock.unlock();
+      const auto there = addressesOfPublishers(parameters_.box_topics[topic].topic);
+      lock.lock();
+      if (const auto last_word = there ? successions_[topic].look(*there) : std::nullopt) {
+        tracker_.forgetBefore(topic, *last_word);
+        forgotten_();
+      }
+    }
+  }
+}
+
+}  // namespace box_query

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "ros/bell.h"
+#include "ros/box_topics.h"
+#include "ros/box_tracker.h"
+#include "ros/succession.h"
+
+#include <box_query/ros/parameters.h>
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace box_query {
+
+/// Watches who publishes the topics and the clock, which roscpp does not tell, and lets the tracker
+/// know: of publishers that cannot be heard, of former ones that have made way for new ones, and of
+/// a simulated clock that nobody publishes any more. Asks the master, which may take its time, from
+/// a thread of its own.
+class PublisherWatch {
+ public:
+  /// `mutex` guards the tracker. `forgotten` is called after what former publishers said was
+  /// forgotten.
+  PublisherWatch(const Parameters& parameters, BoxTracker& tracker, std::timed_mutex& mutex,
+                 std::function<void()> forgotten);
+
+  /// The topics must not stop before this does.
+  void start(BoxTopics& topics);
+  /// Returns when nothing is watched any more. Must be called after start().
+  void stop();
+
+  /// To be called before each message of the topic is received, without the mutex: of somebody new
+  /// it is noted who publishes, since by the time of a look that may be gone again.
+  void meet(std::size_t topic, const Succession::Connection& connection);
+
+ private:
+  void run(BoxTopics& topics);
+  void checkPublishers(BoxTopics& topics);
+  void checkClock();
+  void forgetFormerPublishers();
+
+  const Parameters& parameters_;
+  BoxTracker& tracker_;
+  std::timed_mutex& mutex_;  ///< guards the successions too
+  const std::function<void()> forgotten_;
+  std::vector<Succession> successions_;  ///< of the publishers of each topic
+  Bell bell_;
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+}  // namespace box_query
