@@ -37,7 +37,7 @@ bool PointList::isSurelyWithin(double max_coordinate) const {
   Magnitudes rotation;
   rotation.see(rotation_.data(), 9);
   Magnitudes center;
-  center.see(shape_.center);
+  center.seeThree(shape_.center.data());
   Magnitudes points;
   points.see(points_.empty() ? nullptr : points_.front().data(), 3 * points_.size());
   // A rotation lengthens no coordinate to twice the longest.

@@ -15,6 +15,7 @@
 namespace box_query {
 
 struct IdentifiedBox {
+  IdentifiedBox() = default;  ///< of any numbers
   IdentifiedBox(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
                 const Vector3& half_extents)
       : id(box_id), box{center, orientation, half_extents} {}

@@ -40,10 +40,12 @@ const std::array<const char*, kRejections>& rejectionNames();
 /// How far the norm of a quaternion may be from 1. Less is taken as it stands.
 constexpr double kNormTolerance = 1e-2;
 
+inline bool isNearUnit(double squared_norm) {
+  return squared_norm >= (1.0 - kNormTolerance) * (1.0 - kNormTolerance) &&
+         squared_norm <= (1.0 + kNormTolerance) * (1.0 + kNormTolerance);
+}
 inline bool isNearUnit(const Quaternion& q) {
-  const double squared = q.squaredNorm();
-  return squared >= (1.0 - kNormTolerance) * (1.0 - kNormTolerance) &&
-         squared <= (1.0 + kNormTolerance) * (1.0 + kNormTolerance);
+  return isNearUnit(q.squaredNorm());
 }
 
 struct RigidObject;
@@ -86,6 +88,8 @@ struct BoxChange {
   /// rejects it. A half is exact.
   void add(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
            const Vector3& size);
+  /// The same for all of them, in less time; their ids are their places. Call it first.
+  void addAll(const WireBoxes& wire_boxes);
   /// The same for a box at each of `points`, which are in the frame of `shape`: see PointList.
   void addPoints(const WireBox& shape, std::vector<Vector3>&& points);
 

@@ -3,8 +3,6 @@
 /// A quick look at many numbers at once.
 #pragma once
 
-#include <box_query/geometry.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -20,9 +18,11 @@ namespace box_query {
 /// a double goes along in it and is not looked at.
 class Magnitudes {
  public:
-  void see(const Vector3& numbers) {
-    seeTwo(numbers.data());
-    seeTwo(numbers.data() + 1);
+  /// The bytes of three numbers, wherever they are.
+  void seeThree(const void* numbers) {
+    const auto* const bytes = static_cast<const std::uint8_t*>(numbers);
+    seeTwo(bytes);
+    seeTwo(bytes + sizeof(double));
   }
 
   void see(const double* numbers, std::size_t count) {
@@ -74,7 +74,7 @@ class Magnitudes {
     return number;
   }
 
-  void seeTwo(const double* numbers) {
+  void seeTwo(const void* numbers) {
     Bits bits;
     std::memcpy(&bits, numbers, sizeof(bits));
     seeBits(bits);

@@ -13,8 +13,7 @@
 namespace box_query {
 namespace {
 
-/// Bytes of a pose and a size, of a detection whose arrays and strings are empty, of a hypothesis.
-constexpr std::size_t kBoxSize = 80;
+/// Bytes of a detection whose arrays and strings are empty, of a hypothesis.
 constexpr std::size_t kDetectionSize = 142;
 constexpr std::size_t kHypothesisSize = 360;
 
@@ -41,7 +40,7 @@ std::string readClass(WireReader& reader) {
 void decodeVisionBoundingBox3DArray(WireReader& reader, const Limits& limits,
                                     DecodedMessage& message) {
   const WireHeader header = reader.header();
-  const std::uint32_t boxes = reader.count(kBoxSize);
+  const std::uint32_t boxes = reader.count(WireBox::kSize);
   WholeSet set(boxes, limits, header.stamp, message);
   if (boxes == 0 || !message.problem.empty()) {
     return;
@@ -49,13 +48,10 @@ void decodeVisionBoundingBox3DArray(WireReader& reader, const Limits& limits,
   BoxChange& change = set.changeOf(header, "");  // of all boxes
   if (isBadFrame(change.frame)) {
     change.reject(Rejection::kFrame, boxes, "'" + std::string(header.frame) + "'", 0);
-    reader.skip(std::uint64_t{boxes} * kBoxSize);
+    reader.skip(std::uint64_t{boxes} * WireBox::kSize);
     return;
   }
-  for (std::uint32_t n = 0; n < boxes; ++n) {
-    const WireBox box = reader.box();
-    change.add(n, box.center, box.orientation, box.size);
-  }
+  change.addAll(reader.boxes(boxes));
 }
 
 void decodeVisionDetection3DArray(WireReader& reader, const Limits& limits,

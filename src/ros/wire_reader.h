@@ -45,6 +45,22 @@ struct WireBox {
   Vector3 size;
 };
 
+/// An array of them, still in the bytes.
+class WireBoxes {
+ public:
+  WireBoxes(const std::uint8_t* bytes, std::uint32_t count) : bytes_(bytes), count_(count) {}
+
+  std::uint32_t size() const { return count_; }
+  WireBox operator[](std::uint32_t n) const { return WireBox(bytes_ + n * WireBox::kSize); }
+  /// The bytes of three numbers of a box.
+  const std::uint8_t* centerOf(std::uint32_t n) const { return bytes_ + n * WireBox::kSize; }
+  const std::uint8_t* sizeOf(std::uint32_t n) const { return centerOf(n) + 7 * sizeof(double); }
+
+ private:
+  const std::uint8_t* bytes_;
+  std::uint32_t count_;
+};
+
 /// Reads the fields of a message in their order. Once something does not fit, ok() is false for
 /// good and everything reads as zero or empty, so that a decoder need look only once, at its end.
 /// Nothing is allocated here; views are into the bytes.
@@ -146,6 +162,12 @@ class WireReader {
   WireBox box() {
     const std::uint8_t* bytes = take(WireBox::kSize);
     return bytes ? WireBox(bytes) : WireBox();
+  }
+
+  /// So many of them; none if they do not fit.
+  WireBoxes boxes(std::uint32_t count) {
+    const std::uint8_t* const bytes = take(std::uint64_t{count} * WireBox::kSize);
+    return {bytes, bytes ? count : 0};
   }
 
   /// geometry_msgs/Quaternion: x, y, z, w, which is Eigen's own order.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/magnitudes.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -54,15 +55,17 @@ TEST(Magnitudes, FindsTheOneThatIsOutOfBoundsAtEveryPlace) {
       EXPECT_GE(seen(numbers).smallest(), count > 1 ? 2.8 : 1e300);
     }
   }
-  for (int axis = 0; axis < 3; ++axis) {
+  for (std::size_t place = 0; place < 3; ++place) {
     Magnitudes magnitudes;
-    magnitudes.see(Vector3(1.0, 1.0, 1.0));
-    Vector3 last(1.0, 1.0, 1.0);
-    last[axis] = 1e9;
-    magnitudes.see(last);
+    std::array<double, 3> numbers = {1.0, 1.0, 1.0};
+    magnitudes.seeThree(numbers.data());
+    EXPECT_LE(magnitudes.largest(), 1.1);
+    numbers[place] = 1e9;
+    magnitudes.seeThree(numbers.data());
     EXPECT_GE(magnitudes.largest(), 1e9);
-    last[axis] = 1e-9;
-    magnitudes.see(last);
+    EXPECT_GE(magnitudes.smallest(), 0.9);
+    numbers[place] = 1e-9;
+    magnitudes.seeThree(numbers.data());
     EXPECT_LE(magnitudes.smallest(), 1e-9);
   }
 }

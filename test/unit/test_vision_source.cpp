@@ -131,6 +131,9 @@ TEST(VisionSource, FindsASingleBadNumberAmongManyBoxes) {
     EXPECT_EQ(change.boxes.size(), 4U);
     EXPECT_EQ(countOf(change, why), 1U) << change.problem;
     EXPECT_EQ(change.rejected(), 1U);
+    EXPECT_EQ(change.problem.rfind("box 3 ", 0), 0U) << change.problem;
+    EXPECT_EQ(change.boxes.id(2), 2);
+    EXPECT_EQ(change.boxes.id(3), 4) << "identities do not move up";
     ++found;
   };
   for (std::size_t field = 0; field < 10; ++field) {
@@ -146,13 +149,20 @@ TEST(VisionSource, FindsASingleBadNumberAmongManyBoxes) {
     std::memcpy(reinterpret_cast<char*>(&box) + field * sizeof(double), &bad, sizeof bad);
     expectRejected(box, Rejection::kNegativeSize);
   }
+  for (const std::size_t field : {0, 1, 2, 7, 8, 9}) {
+    for (const double bad : {2e7, 1e300, 1e-201, 5e-324}) {
+      VisionBoundingBox3D box = boxAt(5);
+      std::memcpy(reinterpret_cast<char*>(&box) + field * sizeof(double), &bad, sizeof bad);
+      expectRejected(box, Rejection::kOutOfBounds);
+    }
+  }
   for (const double norm : {0.0, 0.98, 1.02}) {
     VisionBoundingBox3D box = boxAt(5);
     box.center.orientation.z = 0.6 * norm;
     box.center.orientation.w = 0.8 * norm;
     expectRejected(box, Rejection::kOrientation);
   }
-  EXPECT_EQ(found, 36U);
+  EXPECT_EQ(found, 60U);
 }
 
 TEST(VisionSource, RejectsBadBoxesAndKeepsTheRest) {

@@ -41,6 +41,11 @@ TEST(WireReader, ReadsWhatRoscppWrites) {
   WireReader ahead = reader;
   EXPECT_EQ(ahead.vectors(2)[1], Vector3(0.1, 0.2, 0.3));
   ahead = reader;
+  EXPECT_EQ(ahead.boxes(1)[0].size, Vector3(5.0, 6.0, 7.0));
+  ahead = reader;
+  EXPECT_EQ(ahead.boxes(2).size(), 0U);
+  EXPECT_FALSE(ahead.ok());
+  ahead = reader;
   EXPECT_TRUE(ahead.vectors(4).empty());
   EXPECT_FALSE(ahead.ok());
   const WireBox box = reader.box();
