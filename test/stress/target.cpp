@@ -153,8 +153,9 @@ Vector3 onRay(const Vector3& p, double t, const Vector3& d) {
 Sample aim(Random& random, const Target& target, const Contact& contact, double reach, int ulps) {
   const Vector3 place = target.at(contact.place);
   const Vector3 direction = target.along(contact.direction);
+  const int farthest = std::ilogb(reach) + 1;
   double t = random.chance(0.5) ? random.uniform(0.0, reach)
-                                : std::ldexp(1.0, random.between(-2, std::ilogb(reach) + 1));
+                                : std::ldexp(1.0, random.between(std::min(-2, farthest), farthest));
   if (random.chance(0.15)) {
     t = random.chance(0.5) ? -t : 0.0;
   }
