@@ -115,11 +115,20 @@ class FirstEntered {
   };
 
   void take(Entry&& entry) {
+    if (any() && isAtStart(entry) && isAtStart(best_)) {
+      if (entry.box < best_.box) {
+        best_ = std::move(entry);
+      }
+      return;
+    }
     if (!any() || entry.enter_hi < best_.enter_lo ||
         (!isBehindEnteredFace(entry) && isBefore(entry, best_))) {
       best_ = std::move(entry);
     }
   }
+
+  /// Whether it is entered where the component starts: inside of it, or on it.
+  static bool isAtStart(const Entry& entry) { return kHasStart<T> && entry.enter_hi <= 0.0; }
 
   /// Whether a box begins at a face of the best one that is entered, across an axis of the world,
   /// so that it is entered with it or later, and has the higher index: the rule among shelves.

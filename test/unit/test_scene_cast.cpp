@@ -108,6 +108,28 @@ TEST(SceneCast, StartingInsideIsRangeZero) {
   EXPECT_EQ(hit.point, kAlongX.origin);
 }
 
+TEST(SceneCast, OfBoxesAroundTheOriginTheLowestIndexIsFirst) {
+  const Quaternion turn(0.8, 0.36, 0.48, 0.1);
+  const OrientedBox around{{0.1, 0, 0}, turn, {2, 1, 1}};
+  const OrientedBox far{{9, 0, 0}, turn, {1, 1, 1}};
+  const OrientedBox larger{{0, 0.2, 0}, turn, {3, 2, 4}};
+  const Ray ray{{0.2, 0.1, 0.3}, {1, 0.5, -0.25}};
+  // Alone, and among so many that the tree offers them in an order of its own.
+  for (const int others : {0, 200}) {
+    std::vector<Box> boxes{far, around, larger, around};
+    for (int i = 0; i < others; ++i) {
+      boxes.emplace_back(cubeAt(20 + i, 5));
+    }
+    EXPECT_EQ(Scene(boxes).cast(ray).box, 1U);
+    EXPECT_EQ(Scene(boxes).castClosest(ray).t_upper, 0.0);
+    std::swap(boxes[1], boxes[2]);
+    EXPECT_EQ(Scene(boxes).cast(ray).box, 1U);
+    EXPECT_EQ(Scene(boxes).castClosest(ray).box, 1U);
+    boxes.insert(boxes.begin(), far);
+    EXPECT_EQ(Scene(boxes).cast(ray).box, 2U);
+  }
+}
+
 TEST(SceneCast, AZeroDirectionIsAPoint) {
   const Scene scene({cubeAt(5), cubeAt(0)});
   const Hit hit = scene.cast(Ray{{0, 1, 0}, {0, 0, 0}});
