@@ -118,6 +118,10 @@ class BoxStore {
 
   const Items& items(std::size_t topic) const { return topics_.at(topic).items; }
   std::size_t waiting(std::size_t topic) const { return topics_.at(topic).waiting; }
+  /// Boxes that are placed, about: too few where some have a later word that waits.
+  std::size_t placed(std::size_t topic) const {
+    return topics_.at(topic).size - topics_.at(topic).waiting;
+  }
   std::size_t rejected(std::size_t topic) const { return topics_.at(topic).rejected; }
 
   /// Nothing expires before this. [ns] of ROS time

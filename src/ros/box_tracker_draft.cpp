@@ -25,9 +25,14 @@ Draft BoxTracker::draft() {
   draft.snapshot.clock_gone = clock_gone_;
   draft.snapshot.topics.resize(topics_.size());
   used_frames_.clear();
-  draft.boxes.reserve(drafted_boxes_);
-  draft.snapshot.names.reserve(drafted_boxes_);
-  draft.snapshot.stamps.reserve(drafted_boxes_);
+  std::size_t boxes = 0;
+  for (const std::size_t topic : by_name_) {
+    boxes += store_.placed(topic);
+  }
+  boxes = std::max(boxes, drafted_boxes_);
+  draft.boxes.reserve(boxes);
+  draft.snapshot.names.reserve(boxes);
+  draft.snapshot.stamps.reserve(boxes);
   for (const std::size_t topic : by_name_) {
     draftTopic(topic, draft);
   }
@@ -53,6 +58,7 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
     std::size_t box;  ///< of the item
   };
   std::vector<Row> rows;  // of one namespace
+  rows.reserve(store_.placed(index));
   for (const auto& [ns, items] : store_.items(index)) {
     rows.clear();
     for (const auto& entry : items) {
