@@ -81,11 +81,30 @@ Columns readHeader(const std::vector<std::string>& fields, const Place& place) {
   return columns;
 }
 
+/// Reads numbers by a stream of the classic locale rather than by std::from_chars, which GCC 9
+/// lacks for double. To make one takes longer than to read a number.
+class NumberReader {
+ public:
+  NumberReader() { in_.imbue(std::locale::classic()); }
+
+  /// Whether the whole of the text is a finite number.
+  bool read(const std::string& text, double& number) {
+    in_.clear();
+    in_.str(text);
+    in_ >> std::noskipws >> number;
+    return in_ && in_.peek() == std::istringstream::traits_type::eof() && std::isfinite(number);
+  }
+
+ private:
+  std::istringstream in_;
+};
+
 /// One line of boxes, by column.
 class Row {
  public:
-  Row(const Columns& columns, std::vector<std::string> fields, const Place& place)
-      : columns_(columns), fields_(std::move(fields)), place_(place) {}
+  Row(const Columns& columns, std::vector<std::string> fields, NumberReader& numbers,
+      const Place& place)
+      : columns_(columns), fields_(std::move(fields)), numbers_(numbers), place_(place) {}
 
   const std::string& text(const char* column) const {
     const auto found = std::find_if(kColumns.begin(), kColumns.end(),
@@ -93,13 +112,9 @@ class Row {
     return fields_[columns_[static_cast<std::size_t>(found - kColumns.begin())]];
   }
 
-  /// A stream of the classic locale rather than std::from_chars, which GCC 9 lacks for double.
   double number(const char* column) const {
-    std::istringstream in(text(column));
-    in.imbue(std::locale::classic());
     double value = 0.0;
-    in >> std::noskipws >> value;
-    if (!in || in.peek() != std::istringstream::traits_type::eof() || !std::isfinite(value)) {
+    if (!numbers_.read(text(column), value)) {
       fail(column, "'" + text(column) + "' is not a finite number");
     }
     return value;
@@ -112,6 +127,7 @@ class Row {
  private:
   const Columns& columns_;
   std::vector<std::string> fields_;
+  NumberReader& numbers_;
   const Place& place_;
 };
 
@@ -159,6 +175,7 @@ std::vector<CsvScene> readBoxCsv(std::istream& in, const std::string& name) {
   Place place{name};
   std::string line;
   Columns columns{};
+  NumberReader numbers;
   bool has_header = false;
   std::vector<CsvScene> scenes;
   std::map<std::pair<std::string, double>, std::size_t> scene_index;
@@ -181,7 +198,7 @@ std::vector<CsvScene> readBoxCsv(std::istream& in, const std::string& name) {
       place.fail(std::to_string(fields.size()) + " fields, but the header has " +
                  std::to_string(kColumns.size()));
     }
-    const Row row(columns, std::move(fields), place);
+    const Row row(columns, std::move(fields), numbers, place);
     const std::pair<std::string, double> key(row.text("scene"), row.number("stamp"));
     const auto [scene, is_new] = scene_index.emplace(key, scenes.size());
     if (is_new) {
