@@ -17,7 +17,7 @@ constexpr double kFlat = 2.1;
 /// ray, and to |C - M|_1 + |e|_1 of the box, M the center of the scene: 19u. See generic/blocks.h.
 constexpr double kBlock = 0x1p-19;
 /// Rays in lanes against bounds: how far the planes are moved apart, relative to |o|_1 of the ray
-/// and the size of the scene: 9u. See generic/list_together.h.
+/// and the size of the scene: 9u. See generic/rays_in_lanes.h.
 constexpr double kInLanes = 0x1p-20;
 /// Numbers that are rounded to float upward by it.
 constexpr double kUp = 1.0 + 0x1p-20;

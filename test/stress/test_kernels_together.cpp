@@ -98,7 +98,7 @@ class KernelTogetherTest : public testing::TestWithParam<const kernels::Kernels*
 };
 
 TEST_P(KernelTogetherTest, MissesNothing) {
-  for (const std::size_t count : {1, 2, 15, 16, 17, 33, 100, 128, 129, 1300}) {
+  for (const std::size_t count : {1, 2, 15, 16, 17, 33, 100, 128, 129, 1300, 5000}) {
     for (const std::size_t num_rays : {1, 15, 16, 17, 333}) {
       Random random(23, count, num_rays);
       const double spacing = count % 2 == 0 ? 4.0 : 8.0;
@@ -162,7 +162,7 @@ TEST_P(KernelTogetherTest, LeavesOpenWhatItCannotTake) {
 }
 
 TEST_P(KernelTogetherTest, SegmentsEndWhereTheyDo) {
-  for (const std::size_t count : {1, 16, 33, 128, 129, 1300}) {
+  for (const std::size_t count : {1, 16, 33, 128, 129, 1300, 5000}) {
     Random random(26, count, 0);
     const double side = 6.0 * std::cbrt(static_cast<double>(count));
     const std::vector<Box> boxes = scattered(random, count, 6.0);

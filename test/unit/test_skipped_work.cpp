@@ -151,7 +151,10 @@ TEST(SkippedWork, DoubtIsCounted) {
 TEST(SkippedWork, ABatchCountsWhatItsThreadsDo) {
   const Scene scene(turnedBoxes(2000));
   const std::vector<Ray> rays = raysAmong(scene.size());
-  const QueryCounters single = castAll(scene);
+  std::vector<ClosestBox> closest(rays.size());
+  const QueryCounters single =
+      workOf([&] { scene.castClosest(rays.data(), rays.size(), closest.data()); });
+  EXPECT_GT(single.nodes, kRays);
   for (const int threads : {1, 3}) {
     QueryCounters batch;
     BatchOptions options;

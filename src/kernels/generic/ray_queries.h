@@ -3,8 +3,10 @@
 
 /// Compares the ray with a record.
 /// @return false if its box is not looked at, or certainly not entered at a parameter up to `bound`
-static inline bool mayEnter(const SceneView& view, const RayQuery& query, const Ray& ray,
-                            double bound, std::uint32_t record, Work& work, Candidate& candidate) {
+[[gnu::always_inline]] static inline bool mayEnter(const SceneView& view, const RayQuery& query,
+                                                   const Ray& ray, double bound,
+                                                   std::uint32_t record, Work& work,
+                                                   Candidate& candidate) {
   const std::uint32_t box = view.box_of_record[record];
   if (query.mask != nullptr && ((query.mask[box / 64] >> (box % 64)) & 1U) == 0) {
     return false;

@@ -141,14 +141,18 @@ struct Delivery {
   void* context;
   Work& work;
 
+  void count(const Work& more) const {
+    work.nodes += more.nodes;
+    work.boxes += more.boxes;
+    work.turned_boxes += more.turned_boxes;
+  }
+
   void take(std::size_t number, Answer answer, bool gave_up, const Found& found) const {
     if (answer == Answer::kNotTaken || gave_up) {
       deliver(context, number, Answer::kNotTaken, nullptr);
       return;
     }
-    work.nodes += found.work.nodes;
-    work.boxes += found.work.boxes;
-    work.turned_boxes += found.work.turned_boxes;
+    count(found.work);
     if (answer == Answer::kYes || found.count > 0) {
       deliver(context, number, answer, &found);
     }
@@ -165,9 +169,16 @@ static void askAlone(const SceneView& view, const RayQueries& queries, std::size
   to.take(number, answer, gave_up, found);
 }
 
+/// The rest of a ray.
+struct RestOfRay {
+  std::uint32_t number;  ///< of the query
+  float begin;           ///< [t] before it no box is met
+};
+
 /// Down a tree.
 template <typename Ask>
-static void searchTree(const SceneView& view, const RayQueries& queries, const Delivery& to) {
+static void searchTree(const SceneView& view, const RayQueries& queries, const RestOfRay* rests,
+                       std::size_t count, const Delivery& to) {
   using Visit = typename Ask::Visit;
   Companion<Visit> rays[kRaysTogether];
   const Company<Visit> company{view, rays};
@@ -180,15 +191,18 @@ static void searchTree(const SceneView& view, const RayQueries& queries, const D
     int listed = 0;
     for (std::uint32_t i = 0; i < kRaysTogether; ++i) {
       Companion<Visit>& c = rays[i];
-      while ((under_way & (1U << i)) == 0 && next < queries.count) {
-        c.number = next++;
+      while ((under_way & (1U << i)) == 0 && next < count) {
+        const RestOfRay& rest = rests[next++];
+        c.number = rest.number;
         c.query = queries.query(c.number, Ask::kHaveEnds);
         c.gave_up = false;
         const Outcome outcome = begin(view, c.query, c.found, c.ray, true);
         if (outcome == Outcome::kReady) {
           c.visit = Ask::visitOf(view, c);
-          c.begin = c.inFloat().begin_s;
-          c.length = firstStretch(view);
+          const float begun =
+              rest.begin * static_cast<float>(c.inFloat().scale * (2.0 - bounds::kUp));
+          c.begin = begun > c.inFloat().begin_s ? begun : c.inFloat().begin_s;
+          c.length = firstStretch(view) * (rest.begin > 0.0F ? 2.0F : 1.0F);
           under_way |= 1U << i;
         } else {
           to.take(c.number, outcome == Outcome::kMiss ? Answer::kUndecided : Answer::kNotTaken,
