@@ -39,7 +39,9 @@ bool PointList::isSurelyWithin(double max_coordinate) const {
   Magnitudes center;
   center.seeThree(shape_.center.data());
   Magnitudes points;
-  points.see(points_.empty() ? nullptr : points_.front().data(), 3 * points_.size());
+  if (!points_.empty()) {
+    points.see(points_.front().data(), 3 * points_.size());
+  }
   // A rotation lengthens no coordinate to twice the longest.
   return center.largest() + (turned_ ? 2.0 : 1.0) * points.largest() <= max_coordinate &&
          center.smallest() >= kPlainCoordinate && points.smallest() >= kPlainCoordinate &&

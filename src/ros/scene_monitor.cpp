@@ -291,7 +291,7 @@ std::string SceneMonitor::sceneAt(const ros::Time& time, SnapshotPtr& scene) {
     now = impl_->now;
   }
   std::shared_ptr<const PastScene> past;
-  const std::string missing = impl_->history.find(time, now, past);
+  std::string missing = impl_->history.find(time, now, past);
   if (missing.empty()) {
     scene = impl_->builder.restore(*past);
   }

@@ -115,8 +115,9 @@ struct AskClosest {
 };
 
 /// Whether any box is met.
-struct AskAny {
-  static constexpr bool kHaveEnds = false;
+template <bool kAreSegments>
+struct AskAnyOf {
+  static constexpr bool kHaveEnds = kAreSegments;
   using Visit = AnyVisit;
 
   static Visit visitOf(const SceneView& view, Companion<Visit>& c) {
@@ -131,9 +132,8 @@ struct AskAny {
   }
 };
 
-struct AskAnyOfSegments : AskAny {
-  static constexpr bool kHaveEnds = true;
-};
+using AskAny = AskAnyOf<false>;
+using AskAnyOfSegments = AskAnyOf<true>;
 
 /// Where what is found goes.
 struct Delivery {
