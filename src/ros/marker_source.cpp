@@ -15,18 +15,11 @@ using visualization_msgs::Marker;
 constexpr std::size_t kMarkerSize = 154;
 constexpr std::size_t kPointSize = 24;
 constexpr std::size_t kColorSize = 16;
+/// From its id to whether it is locked to its frame.
+constexpr std::size_t kBlockSize = 117;
 
 /// Lifetimes up to this are forever, as in rviz. [ns]
 constexpr std::int64_t kShortestLifetime = 100000;
-
-/// What a marker says of all its boxes.
-WireBox readShape(WireReader& reader) {
-  WireBox shape = reader.box();
-  if (shape.orientation.coeffs() == Eigen::Vector4d::Zero()) {
-    shape.orientation.setIdentity();
-  }
-  return shape;
-}
 
 /// Appends one marker. `boxes` counts those of the message so far.
 void readMarker(WireReader& reader, const Limits& limits, std::size_t& boxes,
@@ -35,14 +28,18 @@ void readMarker(WireReader& reader, const Limits& limits, std::size_t& boxes,
   const WireHeader header = reader.header();
   change.stamp = header.stamp;
   change.frame = std::string(stripSlash(header.frame));
-  change.ns = reader.name("namespace");
-  change.id = reader.number<std::int32_t>();
-  const auto type = reader.number<std::int32_t>();
-  const auto action = reader.number<std::int32_t>();
-  const WireBox shape = readShape(reader);
-  reader.skip(kColorSize);
-  const std::int64_t lifetime = reader.duration();
-  change.frame_locked = reader.number<std::uint8_t>() != 0;
+  change.ns = std::string(reader.name("namespace"));
+  WireBlock block = reader.block<kBlockSize>();
+  change.id = block.number<std::int32_t>();
+  const auto type = block.number<std::int32_t>();
+  const auto action = block.number<std::int32_t>();
+  WireBox shape = block.box();  // of all its boxes
+  if (shape.orientation.coeffs() == Eigen::Vector4d::Zero()) {
+    shape.orientation.setIdentity();
+  }
+  block.skip(kColorSize);
+  const std::int64_t lifetime = block.duration();
+  change.frame_locked = block.number<std::uint8_t>() != 0;
   change.lifetime = lifetime > kShortestLifetime ? lifetime : 0;
 
   const std::uint32_t points = reader.count(kPointSize);
@@ -63,7 +60,7 @@ void readMarker(WireReader& reader, const Limits& limits, std::size_t& boxes,
     change.add(change.id, shape.center, shape.orientation, shape.size);
   }
   reader.skip(std::uint64_t{reader.count(kColorSize)} * kColorSize);
-  change.label = adds ? reader.name("text") : reader.string();
+  change.label = std::string(adds ? reader.name("text") : reader.string());
   reader.string();  // mesh_resource
   reader.skip(1);   // mesh_use_embedded_materials
 

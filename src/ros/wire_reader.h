@@ -61,6 +61,35 @@ class WireBoxes {
   std::uint32_t count_;
 };
 
+/// Fields of fixed sizes, one behind the other, that are known to fit: their reader has looked
+/// once.
+class WireBlock {
+ public:
+  explicit WireBlock(const std::uint8_t* bytes) : next_(bytes) {}
+
+  template <typename T>
+  T number() {
+    T value = 0;
+    std::memcpy(&value, next_, sizeof(T));
+    next_ += sizeof(T);
+    return value;
+  }
+  /// Straight into what is returned: a copy would be waited for.
+  WireBox box() {
+    next_ += WireBox::kSize;
+    return WireBox(next_ - WireBox::kSize);
+  }
+  /// A duration in nanoseconds: any two 32-bit numbers fit.
+  std::int64_t duration() {
+    const std::int64_t seconds = number<std::int32_t>();
+    return seconds * 1000000000 + number<std::int32_t>();
+  }
+  void skip(std::size_t size) { next_ += size; }
+
+ private:
+  const std::uint8_t* next_;
+};
+
 /// Reads the fields of a message in their order. Once something does not fit, ok() is false for
 /// good and everything reads as zero or empty, so that a decoder need look only once, at its end.
 /// Nothing is allocated here; views are into the bytes.
@@ -85,6 +114,14 @@ class WireReader {
       std::memcpy(&value, bytes, sizeof(T));
     }
     return value;
+  }
+
+  /// So many bytes of fields; zeros if they do not fit.
+  template <std::size_t kSize>
+  WireBlock block() {
+    static constexpr std::uint8_t kZeros[kSize] = {};
+    const std::uint8_t* const bytes = take(kSize);
+    return WireBlock(bytes ? bytes : kZeros);
   }
 
   std::string_view string() {
@@ -117,26 +154,15 @@ class WireReader {
 
   void skip(std::uint64_t size) { take(size); }
 
-  ros::Time time() {
-    ros::Time value;
-    value.sec = number<std::uint32_t>();
-    value.nsec = number<std::uint32_t>();
-    if (value.nsec >= 1000000000U) {  // what ros::Time's own functions throw at
-      fail("a time has " + std::to_string(value.nsec) + " nanoseconds");
-      return ros::Time();
-    }
-    return value;
-  }
+  ros::Time time() { return timeOf(block<kTime>()); }
 
   /// A duration in nanoseconds: any two 32-bit numbers fit.
-  std::int64_t duration() {
-    const std::int64_t seconds = number<std::int32_t>();
-    return seconds * 1000000000 + number<std::int32_t>();
-  }
+  std::int64_t duration() { return block<2 * sizeof(std::int32_t)>().duration(); }
 
   WireHeader header() {
-    skip(sizeof(std::uint32_t));  // seq
-    const ros::Time stamp = time();
+    WireBlock block = this->block<sizeof(std::uint32_t) + kTime>();
+    block.skip(sizeof(std::uint32_t));  // seq
+    const ros::Time stamp = timeOf(block);
     return {stamp, name("frame")};
   }
 
@@ -182,6 +208,18 @@ class WireReader {
  private:
   static constexpr std::size_t kVector = 3 * sizeof(double);
   static constexpr std::size_t kQuaternion = 4 * sizeof(double);
+  static constexpr std::size_t kTime = 2 * sizeof(std::uint32_t);
+
+  ros::Time timeOf(WireBlock block) {
+    ros::Time value;
+    value.sec = block.number<std::uint32_t>();
+    value.nsec = block.number<std::uint32_t>();
+    if (value.nsec >= 1000000000U) {  // what ros::Time's own functions throw at
+      fail("a time has " + std::to_string(value.nsec) + " nanoseconds");
+      return ros::Time();
+    }
+    return value;
+  }
 
   const std::uint8_t* take(std::uint64_t size) {
     if (size > left_) {

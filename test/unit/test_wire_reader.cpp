@@ -41,6 +41,14 @@ TEST(WireReader, ReadsWhatRoscppWrites) {
   WireReader ahead = reader;
   EXPECT_EQ(ahead.vectors(2)[1], Vector3(0.1, 0.2, 0.3));
   ahead = reader;
+  WireBlock block = ahead.block<80>();
+  EXPECT_EQ(block.box().size, Vector3(5.0, 6.0, 7.0));
+  EXPECT_EQ(ahead.left(), 0U);
+  ahead = reader;
+  block = ahead.block<81>();
+  EXPECT_FALSE(ahead.ok());
+  EXPECT_EQ(block.box().orientation.coeffs(), Eigen::Vector4d::Zero()) << "as all that is missing";
+  ahead = reader;
   EXPECT_EQ(ahead.boxes(1)[0].size, Vector3(5.0, 6.0, 7.0));
   ahead = reader;
   EXPECT_EQ(ahead.boxes(2).size(), 0U);
