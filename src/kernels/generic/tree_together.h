@@ -35,10 +35,7 @@ class TreeSearch : LaneSearch<Ask> {
     for (std::uint32_t bits = active; bits != 0; bits &= bits - 1) {
       const int ray = lowestBit(bits);
       const bool is_begun = (begun_ >> ray & 1) != 0;
-      const float end = in_memory_.end[ray];
-      if (is_begun && (rays_[ray].inFloat().end_s < 0.0F || rays_[ray].visit.end() <= end)) {
-        Base::deliver(ray);
-      } else if (whole[ray] > end) {
+      if (!isDone(ray, is_begun, whole[ray])) {
         // (What was found is found again, with its first stretch.)
         const bool is_empty = !is_begun || rays_[ray].found.count == 0;
         if (is_begun) {
@@ -46,7 +43,7 @@ class TreeSearch : LaneSearch<Ask> {
         }
         unfinished.rests[unfinished.count++] = {
             static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(ray),
-            is_empty ? end : 0.0F};
+            is_empty ? in_memory_.end[ray] : 0.0F};
       } else if (is_begun) {
         Base::deliver(ray);
       }
@@ -55,6 +52,14 @@ class TreeSearch : LaneSearch<Ask> {
   }
 
  private:
+  /// Whether nothing that matters lies behind the first stretch of a ray.
+  /// @param whole the end of the ray
+  bool isDone(int ray, bool is_begun, float whole) {
+    const float end = in_memory_.end[ray];
+    return whole <= end ||
+           (is_begun && (rays_[ray].inFloat().end_s < 0.0F || rays_[ray].visit.end() <= end));
+  }
+
   /// Ends the rays one stretch behind where they enter the bounds of the scene.
   /// @param whole where they end, or leave these bounds
   /// @return a bit for each that enters them
