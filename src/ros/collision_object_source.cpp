@@ -12,6 +12,7 @@
 #include "ros/rigid_object.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 #include <utility>
@@ -34,64 +35,93 @@ constexpr std::size_t kTriangleSize = 3 * sizeof(std::uint32_t);
 constexpr std::size_t kPointSize = 3 * sizeof(double);
 constexpr std::size_t kPlaneSize = 4 * sizeof(double);
 
-Pose readPose(WireReader& reader) {
-  Pose pose;
-  pose.position = reader.vector();
-  pose.orientation = reader.quaternion();
+Pose readPose(WireBlock& block) {
+  Pose pose{block.vector(), block.quaternion()};
   if (pose.orientation.coeffs() == Eigen::Vector4d::Zero()) {
     pose.orientation.setIdentity();
   }
   return pose;
 }
 
+/// The n-th of them; the identity if there are fewer.
+Pose poseAt(const WireArray& poses, std::uint32_t n) {
+  if (n >= poses.count) {
+    return {};
+  }
+  WireBlock block = poses.elements;
+  block.skip(n * kPoseSize);
+  return readPose(block);
+}
+
 /// What stands at the same places in every object, whatever its operation.
 struct Fields {
   Pose pose;
   std::uint32_t primitives = 0;
-  std::size_t ignored = 0;   ///< primitives that are no boxes
-  std::uint32_t others = 0;  ///< meshes and planes
-  /// Each at an array of poses: of primitives, meshes, planes.
-  boost::container::small_vector<WireReader, 3> shape_poses;
-  std::shared_ptr<RigidObject> object = std::make_shared<RigidObject>();
+  std::size_t ignored = 0;               ///< primitives that are no boxes
+  std::uint32_t others = 0;              ///< meshes and planes
+  std::array<WireArray, 3> shape_poses;  ///< of primitives, meshes, planes
+  std::shared_ptr<RigidObject> object;   ///< what a later MOVE moves
 };
 
-/// Reads the primitives and their poses. The boxes among them come before their poses: a second
-/// reader goes along.
+/// A primitive that is said to be a box.
+struct Solid {
+  std::uint32_t n;
+  std::uint32_t dimensions;
+  Vector3 sides;
+};
+/// Most objects have few: they need no allocation.
+using Solids = boost::container::small_vector<Solid, 16>;
+
+/// @param most as many are wanted
+Solids readSolids(WireReader& reader, std::size_t most, Fields& fields) {
+  Solids solids;
+  solids.reserve(std::min<std::size_t>(fields.primitives, most));
+  for (std::uint32_t n = 0; n < fields.primitives && reader.ok(); ++n) {
+    const SolidPrimitive solid = readSolidPrimitive(reader);
+    if (solid.type != SolidPrimitive::kBox) {
+      ++fields.ignored;
+    } else if (solids.size() < most) {
+      solids.push_back({n, solid.dimensions, solid.sides});
+    }
+  }
+  return solids;
+}
+
+/// Adds the boxes and keeps those that are good as they are within the object.
+void addSolids(const Solids& solids, Fields& fields, BoxChange& change) {
+  fields.object = std::make_shared<RigidObject>();
+  std::vector<IdentifiedBox>& kept = fields.object->boxes;
+  BoxList::Each& boxes = change.boxes.each();
+  boxes.reserve(solids.size());
+  kept.reserve(solids.size());
+  const Placer placed(fields.pose);
+  for (const Solid& solid : solids) {
+    if (solid.dimensions != 3) {
+      change.reject(Rejection::kShape, 1, "it has " + std::to_string(solid.dimensions), solid.n);
+      continue;
+    }
+    const Pose in_object = poseAt(fields.shape_poses.front(), solid.n);
+    const Pose pose = placed(in_object);
+    const std::size_t accepted = boxes.size();
+    change.add(solid.n, pose.position, pose.orientation, solid.sides);
+    if (boxes.size() > accepted) {
+      kept.emplace_back(solid.n, in_object.position, in_object.orientation, 0.5 * solid.sides);
+    }
+  }
+}
+
+/// Reads the primitives and their poses. All primitives come before the first pose.
 void readPrimitives(WireReader& reader, const Limits& limits, Fields& fields, BoxChange& change,
                     DecodedMessage& message) {
   fields.primitives = reader.count(SolidPrimitive::kSmallest);
-  WireReader solids = reader;
-  for (std::uint32_t n = 0; n < fields.primitives && reader.ok(); ++n) {
-    readSolidPrimitive(reader);
-  }
+  const Solids solids = readSolids(reader, limits.boxes, fields);
   if (fields.primitives > limits.boxes) {
     message.problem = tooManyBoxes(limits.boxes);
     return;
   }
-  change.boxes.each().reserve(fields.primitives);
-  fields.object->boxes.reserve(fields.primitives);
-  fields.shape_poses.push_back(reader);
-  const std::uint32_t poses = reader.count(kPoseSize);
-  const Placer placed(fields.pose);
-  for (std::uint32_t n = 0; n < std::max(fields.primitives, poses) && reader.ok(); ++n) {
-    const Pose in_object = n < poses ? readPose(reader) : Pose();
-    if (n >= fields.primitives) {
-      continue;  // a pose too many
-    }
-    const SolidPrimitive solid = readSolidPrimitive(solids);
-    const Pose pose = placed(in_object);
-    const std::size_t accepted = change.boxes.size();
-    if (solid.type != SolidPrimitive::kBox) {
-      ++fields.ignored;
-    } else if (solid.dimensions != 3) {
-      change.reject(Rejection::kShape, 1, "it has " + std::to_string(solid.dimensions), n);
-    } else {
-      change.add(n, pose.position, pose.orientation, solid.sides);
-    }
-    if (change.boxes.size() > accepted) {
-      fields.object->boxes.emplace_back(n, in_object.position, in_object.orientation,
-                                        change.boxes.back().box.half_extents);
-    }
+  fields.shape_poses[0] = reader.array(kPoseSize);
+  if (reader.ok()) {
+    addSolids(solids, fields, change);
   }
 }
 
@@ -101,12 +131,9 @@ void skipMeshesAndPlanes(WireReader& reader, Fields& fields) {
     skipArray(reader, kTriangleSize);
     skipArray(reader, kPointSize);
   }
-  fields.shape_poses.push_back(reader);
-  skipArray(reader, kPoseSize);
-  const std::uint32_t planes = reader.count(kPlaneSize);
-  reader.skip(std::uint64_t{planes} * kPlaneSize);
-  fields.shape_poses.push_back(reader);
-  skipArray(reader, kPoseSize);
+  fields.shape_poses[1] = reader.array(kPoseSize);
+  const std::uint32_t planes = reader.array(kPlaneSize).count;
+  fields.shape_poses[2] = reader.array(kPoseSize);
   fields.others = meshes + planes;
 }
 
@@ -155,10 +182,9 @@ void move(Fields&& fields, BoxChange& change) {
   move.frame = change.frame;
   move.stamp = change.stamp;
   move.add(0, fields.pose.position, fields.pose.orientation, Vector3::Zero());
-  for (WireReader& reader : fields.shape_poses) {
-    const std::uint32_t poses = reader.count(kPoseSize);
-    for (std::uint32_t n = 0; n < poses; ++n) {
-      const Pose pose = readPose(reader);
+  for (const WireArray& poses : fields.shape_poses) {
+    for (std::uint32_t n = 0; n < poses.count; ++n) {
+      const Pose pose = poseAt(poses, n);
       move.add(n, pose.position, pose.orientation, Vector3::Zero());
     }
   }
@@ -214,12 +240,13 @@ void readCollisionObject(WireReader& reader, const Limits& limits, DecodedMessag
   change.stamp = header.stamp;
   change.frame = std::string(stripSlash(header.frame));
   Fields fields;
-  fields.pose = readPose(reader);
+  WireBlock pose = reader.block<kPoseSize>();
+  fields.pose = readPose(pose);
   change.ns = reader.name("id");
   change.label = reader.name("type.key");
   reader.string();  // type.db
   readPrimitives(reader, limits, fields, change, message);
-  if (!message.problem.empty()) {
+  if (!message.problem.empty() || !reader.ok()) {
     return;
   }
   skipMeshesAndPlanes(reader, fields);

@@ -25,7 +25,8 @@ class Placer {
   explicit Placer(const Pose& parent)
       : parent_(parent),
         turns_(parent.orientation.coeffs() != Quaternion::Identity().coeffs()),
-        rotation_(parent.orientation.normalized().toRotationMatrix()) {}
+        rotation_(turns_ ? parent.orientation.normalized().toRotationMatrix()
+                         : Eigen::Matrix3d(Eigen::Matrix3d::Identity())) {}
 
   Pose operator()(const Pose& pose) const {
     if (!turns_) {

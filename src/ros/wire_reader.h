@@ -84,10 +84,28 @@ class WireBlock {
     const std::int64_t seconds = number<std::int32_t>();
     return seconds * 1000000000 + number<std::int32_t>();
   }
+  Vector3 vector() {
+    Vector3 value;
+    copyNumbers(next_, value);
+    next_ += sizeof(value);
+    return value;
+  }
+  Quaternion quaternion() {
+    Quaternion value;
+    copyNumbers(next_, value.coeffs());
+    next_ += sizeof(value);
+    return value;
+  }
   void skip(std::size_t size) { next_ += size; }
 
  private:
   const std::uint8_t* next_;
+};
+
+/// An array, still in the bytes, of elements of one size: all of them fit.
+struct WireArray {
+  std::uint32_t count = 0;
+  WireBlock elements{nullptr};
 };
 
 /// Reads the fields of a message in their order. Once something does not fit, ok() is false for
@@ -150,6 +168,12 @@ class WireReader {
       return 0;
     }
     return elements;
+  }
+
+  /// An array whose elements have `element_size` bytes each; empty if it does not fit.
+  WireArray array(std::size_t element_size) {
+    const std::uint32_t elements = count(element_size);
+    return {elements, WireBlock(take(std::uint64_t{elements} * element_size))};
   }
 
   void skip(std::uint64_t size) { take(size); }
