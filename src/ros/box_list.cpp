@@ -19,10 +19,12 @@ bool sameBits(const Things& a, const Things& b) {
                                                            a.size() * sizeof(a.front())) == 0);
 }
 
-/// Products of coordinates and of numbers of a rotation that are 0 or not below these, and what is
-/// left where such products cancel each other, are not below kSmallestCoordinate.
+/// Products of coordinates and of numbers of a rotation that are 0 or not below 1e-75, and what is
+/// left where such products cancel each other, are not below kSmallestCoordinate. Those numbers are
+/// sums of 0, 1 and products of two numbers of a quaternion: neither they nor what is left of them
+/// are below 1e-75.
 constexpr double kPlainCoordinate = 1e-100;
-constexpr double kPlainRotation = 1e-50;
+constexpr double kPlainQuaternion = 1e-30;
 
 }  // namespace
 
@@ -34,8 +36,8 @@ PointList::PointList(std::int64_t first_id, const OrientedBox& shape, std::vecto
       points_(std::move(points)) {}
 
 bool PointList::isSurelyWithin(double max_coordinate) const {
-  Magnitudes rotation;
-  rotation.see(rotation_.data(), 9);
+  Magnitudes quaternion;  // not of the matrix, which was just written: it would be waited for
+  quaternion.see(shape_.orientation.coeffs().data(), 4);
   Magnitudes center;
   center.seeThree(shape_.center.data());
   Magnitudes points;
@@ -45,7 +47,7 @@ bool PointList::isSurelyWithin(double max_coordinate) const {
   // A rotation lengthens no coordinate to twice the longest.
   return center.largest() + (turned_ ? 2.0 : 1.0) * points.largest() <= max_coordinate &&
          center.smallest() >= kPlainCoordinate && points.smallest() >= kPlainCoordinate &&
-         rotation.smallest() >= kPlainRotation;
+         quaternion.smallest() >= kPlainQuaternion;
 }
 
 bool PointList::isSame(const PointList& other) const {

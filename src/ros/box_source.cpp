@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 #include <sstream>
+#include <utility>
 
 namespace box_query {
 namespace {
@@ -102,9 +103,9 @@ void BoxChange::addAll(const WireBoxes& wire_boxes) {
 
 void BoxChange::addPoints(const WireBox& shape, std::vector<Vector3>&& points) {
   const OrientedBox box{shape.center, shape.orientation, 0.5 * shape.size};
-  const auto list = std::make_shared<const PointList>(id, box, std::move(points));
+  auto list = std::make_shared<const PointList>(id, box, std::move(points));
   if (isGood(shape.center, shape.orientation, shape.size) && list->isSurelyWithin(max_coordinate)) {
-    boxes = BoxList(list);
+    boxes = BoxList(std::move(list));
     return;
   }
   for (std::size_t n = 0; n < list->size(); ++n) {
