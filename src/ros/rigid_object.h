@@ -29,10 +29,21 @@ class Placer {
                          : Eigen::Matrix3d(Eigen::Matrix3d::Identity())) {}
 
   Pose operator()(const Pose& pose) const {
-    if (!turns_) {
-      return {parent_.position + pose.position, pose.orientation};
+    Pose placed;
+    place(pose.position, pose.orientation, placed.position, placed.orientation);
+    return placed;
+  }
+  /// Straight into where the result is kept: a copy would be waited for.
+  void place(const Vector3& position, const Quaternion& orientation, Vector3& placed_position,
+             Quaternion& placed_orientation) const {
+    if (turns_) {
+      placed_position.noalias() = rotation_ * position;
+      placed_position = parent_.position + placed_position;
+      placed_orientation = parent_.orientation * orientation;
+    } else {
+      placed_position = parent_.position + position;
+      placed_orientation = orientation;
     }
-    return {parent_.position + rotation_ * pose.position, parent_.orientation * pose.orientation};
   }
 
  private:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "ros/rigid_object.h"
 #include "unit/collision_objects.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace box_query::test {
@@ -96,6 +98,29 @@ TEST(CollisionObjectSource, TellsOperationsApart) {
   const BoxChange move = decode(object("shelf", {1, 2}, kMove)).changes.at(0);
   EXPECT_EQ(move.kind, BoxChange::Kind::kMove);
   EXPECT_EQ(move.boxes.size(), 3U) << "the pose of the object, and of two shapes";
+}
+
+TEST(CollisionObjectSource, FindsOneBadBoxOfAnyKindAmongGoodOnes) {
+  const auto rejection = [](const auto& spoil) {
+    CollisionObject one = object("shelf", {1, 2, 3});
+    spoil(one.primitives[1].dimensions, one.primitive_poses[1]);
+    const DecodedMessage message = decode(one);
+    EXPECT_EQ(contents(message), "shelf/0:1 shelf/2:3 ");
+    const BoxChange& change = message.changes.at(0);
+    EXPECT_EQ(change.rejected(), 1U);
+    EXPECT_EQ(change.object->boxes.size(), 2U) << "nor can it be moved";
+    const auto& counts = change.rejections;
+    return static_cast<Rejection>(std::find(counts.begin(), counts.end(), 1U) - counts.begin());
+  };
+  EXPECT_EQ(rejection([](auto& sides, auto&) { sides.pop_back(); }), Rejection::kShape);
+  EXPECT_EQ(rejection([](auto& sides, auto&) { sides[2] = -1.0; }), Rejection::kNegativeSize);
+  EXPECT_EQ(rejection([](auto& sides, auto&) { sides[2] = kNan; }), Rejection::kNotFinite);
+  EXPECT_EQ(rejection([](auto& sides, auto&) { sides[2] = 5e-324; }), Rejection::kOutOfBounds)
+      << "half of it is 0";
+  EXPECT_EQ(rejection([](auto&, auto& pose) { pose.position.z = 1e8; }), Rejection::kOutOfBounds);
+  EXPECT_EQ(rejection([](auto&, auto& pose) { pose.orientation.z = kNan; }), Rejection::kNotFinite);
+  EXPECT_EQ(rejection([](auto&, auto& pose) { pose.orientation.w = 1.1; }),
+            Rejection::kOrientation);
 }
 
 TEST(CollisionObjectSource, RejectsBadBoxesAndKeepsTheRest) {
