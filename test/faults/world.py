@@ -84,7 +84,7 @@ class World:
         return self.processes[-1]
 
     def end(self):
-        for by in signal.SIGINT, signal.SIGKILL:  # roslaunch ends its own nodes
+        for by in signal.SIGTERM, signal.SIGKILL:  # roslaunch ends its own nodes
             for process in filter(lambda one: one.poll() is None, reversed(self.processes)):
                 process.send_signal(by)
                 with contextlib.suppress(subprocess.TimeoutExpired):
