@@ -29,6 +29,28 @@ struct Companion {
   float end() const { return begin + length; }
 };
 
+static inline void fetchRecord(const SceneView& view, std::uint32_t entry) {
+  const BoxRecord& record = view.records[entry & kLargestNumber];
+  prefetch(&record);
+  prefetch(&record.column[2]);
+}
+
+/// Calls visit(entry, i) for all entries of a list of records, which are fetched ahead.
+template <typename VisitEntry>
+[[gnu::always_inline]] static inline void forEachRecord(const SceneView& view,
+                                                        const std::uint32_t* list, int count,
+                                                        const VisitEntry& visit) {
+  for (int i = 0; i < count && i < kAhead; ++i) {
+    fetchRecord(view, list[i]);
+  }
+  for (int i = 0; i < count; ++i) {
+    if (i + kAhead < count) {
+      fetchRecord(view, list[i + kAhead]);
+    }
+    visit(list[i], i);
+  }
+}
+
 template <typename Visit>
 struct Company {
   const SceneView& view;
@@ -37,28 +59,6 @@ struct Company {
   Companion<Visit>& rayOf(std::uint32_t entry) const { return rays[entry >> kNumberBits]; }
   static std::uint32_t rayBits(std::uint32_t entry) { return entry & ~kLargestNumber; }
   static std::uint32_t numberOf(std::uint32_t entry) { return entry & kLargestNumber; }
-
-  void fetchRecord(std::uint32_t entry) const {
-    const BoxRecord& record = view.records[numberOf(entry)];
-    prefetch(&record);
-    prefetch(&record.column[2]);
-  }
-
-  void visitAll(const std::uint32_t* records, const float* nears, int count) const {
-    for (int i = 0; i < count && i < kAhead; ++i) {
-      fetchRecord(records[i]);
-    }
-    for (int i = 0; i < count; ++i) {
-      if (i + kAhead < count) {
-        fetchRecord(records[i + kAhead]);
-      }
-      Companion<Visit>& c = rayOf(records[i]);
-      if (nears[i] <= c.inFloat().end_s * static_cast<float>(bounds::kFarther) &&
-          !c.visit(numberOf(records[i]))) {
-        c.inFloat().end_s = -1.0F;  // nothing lies before it
-      }
-    }
-  }
 
   void descend(int level, const std::uint32_t* nodes, int count) const {
     alignas(64) std::uint32_t list[kListedTogether + kSlots];
@@ -69,7 +69,13 @@ struct Company {
       if (level > 0) {
         descend(level - 1, list, listed);
       } else {
-        visitAll(list, nears, listed);
+        forEachRecord(view, list, listed, [&](std::uint32_t entry, int i) {
+          Companion<Visit>& c = rayOf(entry);
+          if (nears[i] <= c.inFloat().end_s * static_cast<float>(bounds::kFarther) &&
+              !c.visit(numberOf(entry))) {
+            c.inFloat().end_s = -1.0F;  // nothing lies before it
+          }
+        });
       }
       listed = 0;
     };

@@ -141,22 +141,10 @@ class TreeSearch : LaneSearch<Ask> {
     }
   }
 
-  void fetchRecord(std::uint32_t entry) const {
-    const BoxRecord& record = view_.records[entry & kLargestNumber];
-    prefetch(&record);
-    prefetch(&record.column[2]);
-  }
-
   void visitAll(const std::uint32_t* records, const float* nears, int count) {
-    for (int i = 0; i < count && i < kAhead; ++i) {
-      fetchRecord(records[i]);
-    }
-    for (int i = 0; i < count; ++i) {
-      if (i + kAhead < count) {
-        fetchRecord(records[i + kAhead]);
-      }
-      visit(static_cast<int>(records[i] >> kNumberBits), records[i] & kLargestNumber, nears[i]);
-    }
+    forEachRecord(view_, records, count, [&](std::uint32_t entry, int i) {
+      visit(static_cast<int>(entry >> kNumberBits), entry & kLargestNumber, nears[i]);
+    });
   }
 
   RaysOfLanes in_memory_;
