@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 namespace box_query {
 namespace {
@@ -49,6 +50,118 @@ void draw(const Ray& ray, double max_range, const Hit& hit, bool miss_means_free
   drawing.add(query);
 }
 
+/// What is asked about each ray, and where its answers go.
+class RayBatch {
+ public:
+  RayBatch(const CastRaysRequest& request, Context& context, const BoxMask* mask,
+           CastRaysResponse& response)
+      : request_(request),
+        context_(context),
+        scene_(context.snapshot.scene),
+        mask_(mask),
+        response_(response),
+        closest_(request.mode == CastRaysRequest::CLOSEST) {
+    const std::size_t rays = request.directions.size();
+    const auto wanted = [&](bool want) { return closest_ && want ? rays : 0; };
+    response.hits.resize(rays);
+    response.ranges.resize(wanted(true));
+    response.exit_ranges.resize(wanted(request.want_exits));
+    response.points.resize(wanted(request.want_points));
+    response.normals.resize(wanted(request.want_normals));
+    response.boxes.resize(wanted(request.want_boxes));
+  }
+
+  /// Answers those from `begin` to `end`.
+  void answerPart(std::size_t begin, std::size_t end) {
+    std::array<Ray, kRaysAtOnce> rays;
+    std::array<double, kRaysAtOnce> each;
+    std::vector<Hit> hits(closest_ ? std::min(kRaysAtOnce, end - begin) : 0);
+    for (; begin < end; begin += kRaysAtOnce) {
+      checkRunning(context_.stopping);
+      const std::size_t count = std::min(kRaysAtOnce, end - begin);
+      take(begin, count, rays.data());
+      const MaxRanges max_ranges = rangesOf(begin, count, each.data());
+      if (closest_) {
+        scene_.cast(rays.data(), count, hits.data(), max_ranges, mask_);
+        set(begin, hits.data(), hits.data() + count);
+      } else {
+        scene_.castAny(rays.data(), count, &response_.hits[begin], max_ranges, mask_);
+      }
+    }
+  }
+
+  /// The few that are drawn, where somebody looks, are cast again.
+  void draw() {
+    const bool miss_means_free = response_.complete || request_.allow_incomplete;
+    for (std::size_t i = 0; i < response_.hits.size() && !context_.drawing.full(); ++i) {
+      Ray ray;
+      take(i, 1, &ray);
+      const double max_range = rangeOf(i);
+      Hit hit;
+      if (closest_) {
+        hit = scene_.cast(ray, max_range, mask_);
+      } else {
+        hit.hit = response_.hits[i] != 0;
+      }
+      box_query::draw(ray, max_range, hit, miss_means_free, context_.drawing);
+    }
+  }
+
+ private:
+  void take(std::size_t begin, std::size_t count, Ray* rays) const {
+    const std::size_t step = request_.origins.size() == 1 ? 0 : 1;
+    const geometry_msgs::Point* const origins = &request_.origins[step * begin];
+    const geometry_msgs::Vector3* const directions = &request_.directions[begin];
+    if (context_.frame.same()) {
+      for (std::size_t k = 0; k < count; ++k) {
+        rays[k] = {fromMessage(origins[step * k]), fromMessage(directions[k])};
+      }
+      return;
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      rays[k] = rayIn(context_, origins[step * k], directions[k], {"directions", begin + k});
+    }
+  }
+
+  double rangeOf(std::size_t i) const {
+    return request_.max_ranges.empty() ? kInf : limitOf(elementAt(request_.max_ranges, i));
+  }
+  /// Where they differ, those of the rays are written to `each`.
+  MaxRanges rangesOf(std::size_t begin, std::size_t count, double* each) const {
+    if (request_.max_ranges.size() <= 1) {
+      return rangeOf(0);
+    }
+    const double* const given = &request_.max_ranges[begin];
+    std::transform(given, given + count, each, limitOf);
+    return MaxRanges(each);
+  }
+
+  /// An array after the other, each of those that are wanted.
+  void set(std::size_t begin, const Hit* first, const Hit* last) {
+    const FrameChange& frame = context_.frame;
+    const auto fill = [=](auto& values, auto&& valueOf) {
+      if (!values.empty()) {
+        std::transform(first, last, &values[begin], valueOf);
+      }
+    };
+    fill(response_.hits, [](const Hit& hit) { return hit.hit; });
+    fill(response_.ranges, [](const Hit& hit) { return hit.range; });
+    fill(response_.exit_ranges, [](const Hit& hit) { return hit.exit_range; });
+    fill(response_.points, [&](const Hit& hit) { return toPoint(frame.pointBack(hit.point)); });
+    fill(response_.normals,
+         [&](const Hit& hit) { return toVector3(frame.directionBack(hit.normal)); });
+    fill(response_.boxes,
+         [](const Hit& hit) { return hit.hit ? static_cast<std::int32_t>(hit.box) : -1; });
+  }
+
+  const CastRaysRequest& request_;
+  Context& context_;
+  const Scene& scene_;
+  const BoxMask* const mask_;
+  CastRaysResponse& response_;
+  const bool closest_;
+};
+
 }  // namespace
 
 void check(const CastRayRequest& request, const Limits& limits) {
@@ -67,12 +180,8 @@ void check(const CastRaysRequest& request, const Limits& limits) {
   checkCount("rays", rays, limits);
   checkLength("origins", request.origins.size(), rays, false);
   checkLength("max_ranges", request.max_ranges.size(), rays, true);
-  for (std::size_t i = 0; i < rays; ++i) {
-    checkDirection({"directions", i}, fromMessage(request.directions[i]));
-  }
-  for (std::size_t i = 0; i < request.origins.size(); ++i) {
-    checkPoint({"origins", i}, fromMessage(request.origins[i]), limits);
-  }
+  checkDirections("directions", request.directions);
+  checkPoints("origins", request.origins, limits);
   for (std::size_t i = 0; i < request.max_ranges.size(); ++i) {
     checkMaxRange({"max_ranges", i}, request.max_ranges[i]);
   }
@@ -111,80 +220,11 @@ void answer(const CastRayRequest& request, Context& context, CastRayResponse& re
 
 void answer(const CastRaysRequest& request, Context& context, CastRaysResponse& response) {
   describeScene(request, context.snapshot, context.now, response);
-  const Scene& scene = context.snapshot.scene;
   const auto mask = maskOf(BoxFilter(request), context.snapshot);
-  const BoxMask* const looked_at = mask ? &*mask : nullptr;
-  const bool closest = request.mode == CastRaysRequest::CLOSEST;
-  const bool want_exits = closest && request.want_exits;
-  const bool want_points = closest && request.want_points;
-  const bool want_normals = closest && request.want_normals;
-  const bool want_boxes = closest && request.want_boxes;
-  const bool miss_means_free = response.complete || request.allow_incomplete;
-  const std::size_t rays = request.directions.size();
-  response.hits.resize(rays);
-  response.ranges.resize(closest ? rays : 0);
-  response.exit_ranges.resize(want_exits ? rays : 0);
-  response.points.resize(want_points ? rays : 0);
-  response.normals.resize(want_normals ? rays : 0);
-  response.boxes.resize(want_boxes ? rays : 0);
-  const auto rayOf = [&](std::size_t i) {
-    return rayIn(context, elementAt(request.origins, i), request.directions[i], {"directions", i});
-  };
-  const auto rangeOf = [&](std::size_t i) {
-    return request.max_ranges.empty() ? kInf : limitOf(elementAt(request.max_ranges, i));
-  };
-  const auto set = [&](std::size_t i, const Hit& hit) {
-    response.hits[i] = hit.hit;
-    response.ranges[i] = hit.range;
-    if (want_exits) {
-      response.exit_ranges[i] = hit.exit_range;
-    }
-    if (want_points) {
-      response.points[i] = toPoint(context.frame.pointBack(hit.point));
-    }
-    if (want_normals) {
-      response.normals[i] = toVector3(context.frame.directionBack(hit.normal));
-    }
-    if (want_boxes) {
-      response.boxes[i] = hit.hit ? static_cast<std::int32_t>(hit.box) : -1;
-    }
-  };
-  const auto answerSome = [&](std::size_t begin, std::size_t end) {
-    checkRunning(context.stopping);
-    std::array<Ray, kRaysAtOnce> some;
-    std::array<double, kRaysAtOnce> max_ranges;
-    for (std::size_t i = begin; i < end; ++i) {
-      some[i - begin] = rayOf(i);
-      max_ranges[i - begin] = rangeOf(i);
-    }
-    const MaxRanges limits(max_ranges.data());
-    if (!closest) {
-      scene.castAny(some.data(), end - begin, &response.hits[begin], limits, looked_at);
-      return;
-    }
-    std::array<Hit, kRaysAtOnce> hits;
-    scene.cast(some.data(), end - begin, hits.data(), limits, looked_at);
-    for (std::size_t i = begin; i < end; ++i) {
-      set(i, hits[i - begin]);
-    }
-  };
-  forEachCountedPart(rays, context.batch_threads, context.totals,
-                     [&](std::size_t begin, std::size_t end) {
-                       for (; begin < end; begin += kRaysAtOnce) {
-                         answerSome(begin, std::min(begin + kRaysAtOnce, end));
-                       }
-                     });
-  // The few that are drawn, where somebody looks, are cast again.
-  for (std::size_t i = 0; i < rays && !context.drawing.full(); ++i) {
-    const Ray ray = rayOf(i);
-    Hit hit;
-    if (closest) {
-      hit = scene.cast(ray, rangeOf(i), looked_at);
-    } else {
-      hit.hit = response.hits[i] != 0;
-    }
-    draw(ray, rangeOf(i), hit, miss_means_free, context.drawing);
-  }
+  RayBatch batch(request, context, mask ? &*mask : nullptr, response);
+  forEachCountedPart(request.directions.size(), context.batch_threads, context.totals,
+                     [&](std::size_t begin, std::size_t end) { batch.answerPart(begin, end); });
+  batch.draw();
   nameBoxes(context.snapshot, {&response.boxes}, response);
 }
 

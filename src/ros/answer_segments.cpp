@@ -104,24 +104,19 @@ class SegmentBatch {
   /// Whether what is known is enough to say that a segment is clear.
   bool trusted() const { return trusted_; }
 
-  /// Answers up to kSegmentsAtOnce segments.
-  void answerSome(std::size_t begin, std::size_t end) {
-    checkRunning(context_.stopping);
-    std::array<Segment, kSegmentsAtOnce> some;
-    for (std::size_t i = begin; i < end; ++i) {
-      some[i - begin] = segmentOf(i);
-    }
-    if (!want_nearest_) {
-      for (std::size_t i = begin; i < end; ++i) {
-        decide(i, some[i - begin], false);
+  /// Answers those from `begin` to `end`.
+  void answerPart(std::size_t begin, std::size_t end) {
+    std::array<Segment, kSegmentsAtOnce> segments;
+    std::vector<Clearance> nearest(want_nearest_ ? std::min(kSegmentsAtOnce, end - begin) : 0);
+    for (; begin < end; begin += kSegmentsAtOnce) {
+      checkRunning(context_.stopping);
+      const std::size_t count = std::min(kSegmentsAtOnce, end - begin);
+      take(begin, count, segments.data());
+      if (want_nearest_) {
+        scene_.clearance(segments.data(), count, nearest.data(), mask_);
+        set(begin, nearest.data(), nearest.data() + count);
       }
-      return;
-    }
-    std::vector<Clearance> nearest(end - begin);
-    scene_.clearance(some.data(), end - begin, nearest.data(), mask_);
-    for (std::size_t i = begin; i < end; ++i) {
-      set(i, nearest[i - begin]);
-      decide(i, some[i - begin], isMoreThan(radiusOf(i), nearest[i - begin]));
+      decide(begin, count, segments.data(), nearest.data());
     }
   }
 
@@ -131,7 +126,8 @@ class SegmentBatch {
       if (response_.states[i] == CheckSegmentsResponse::NOT_EVALUATED) {
         return;
       }
-      const Segment segment = segmentOf(i);
+      Segment segment;
+      take(i, 1, &segment);
       box_query::draw(segment, outcomeOf(response_.states[i]),
                       want_nearest_ ? nearestOf(segment) : Clearance(),
                       want_blockage_ ? blockageOf(i, segment) : Blockage(), context_.drawing);
@@ -139,9 +135,21 @@ class SegmentBatch {
   }
 
  private:
-  Segment segmentOf(std::size_t i) const {
-    const auto [start, end] = endsOf(request_, i);
-    return segmentIn(context_, request_.points[start], request_.points[end], {"points", start});
+  void take(std::size_t begin, std::size_t count, Segment* segments) const {
+    const auto [start, end] = endsOf(request_, begin);
+    const std::size_t step = request_.shape == CheckSegmentsRequest::PAIRS ? 2 : 1;
+    const geometry_msgs::Point* const starts = &request_.points[start];
+    const geometry_msgs::Point* const ends = &request_.points[end];
+    if (context_.frame.same()) {
+      for (std::size_t k = 0; k < count; ++k) {
+        segments[k] = {fromMessage(starts[step * k]), fromMessage(ends[step * k])};
+      }
+      return;
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      segments[k] =
+          segmentIn(context_, starts[step * k], ends[step * k], {"points", start + step * k});
+    }
   }
   double radiusOf(std::size_t i) const {
     return request_.radii.empty() ? 0.0 : elementAt(request_.radii, i);
@@ -151,41 +159,56 @@ class SegmentBatch {
     return scene_.firstBlockage(segment, radiusOf(i), mask_);
   }
 
-  /// @param clear whether that is known; else it is asked
-  void decide(std::size_t i, const Segment& segment, bool clear) {
-    if (!want_blockage_) {
-      setState(i, !clear && !scene_.isClear(segment, radiusOf(i), mask_));
+  /// `nearest`: of each, if they are wanted.
+  void decide(std::size_t begin, std::size_t count, const Segment* segments,
+              const Clearance* nearest) {
+    if (!want_nearest_ && !want_blockage_ && request_.radii.size() <= 1) {
+      std::uint8_t* const states = &response_.states[begin];
+      scene_.isClear(segments, count, states, radiusOf(begin), mask_);
+      std::transform(states, states + count, states,
+                     [this](std::uint8_t clear) { return stateOf(clear == 0); });
       return;
     }
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t i = begin + k;
+      const bool clear = want_nearest_ && isMoreThan(radiusOf(i), nearest[k]);
+      response_.states[i] = stateOf(isBlocked(i, segments[k], clear));
+    }
+  }
+  /// Fills in by what, if that is wanted. @param clear whether that is known; else it is asked
+  bool isBlocked(std::size_t i, const Segment& segment, bool clear) {
+    if (!want_blockage_) {
+      return !clear && !scene_.isClear(segment, radiusOf(i), mask_);
+    }
     const Blockage blockage = clear ? Blockage() : blockageOf(i, segment);
-    set(i, blockage);
-    setState(i, blockage.blocked);
-  }
-
-  void set(std::size_t i, const Clearance& nearest) {
-    if (request_.want_clearances) {
-      response_.clearances[i] = nearest.distance;
-    }
-    if (request_.want_points) {
-      response_.points_on_segment[i] = toPoint(context_.frame.pointBack(nearest.on_segment));
-      response_.points_on_box[i] = toPoint(context_.frame.pointBack(nearest.on_box));
-    }
-    if (request_.want_boxes) {
-      response_.nearest_boxes[i] = indexOf(nearest.box);
-    }
-  }
-  void set(std::size_t i, const Blockage& blockage) {
     if (request_.want_blocked_at) {
       response_.blocked_at[i] = blockage.blocked_at;
     }
     if (request_.want_boxes) {
       response_.blocking_boxes[i] = indexOf(blockage.box);
     }
+    return blockage.blocked;
   }
-  void setState(std::size_t i, bool blocked) {
-    response_.states[i] = blocked    ? CheckSegmentsResponse::BLOCKED
-                          : trusted_ ? CheckSegmentsResponse::CLEAR
-                                     : CheckSegmentsResponse::UNKNOWN;
+
+  /// An array after the other, each of those that are wanted.
+  void set(std::size_t begin, const Clearance* first, const Clearance* last) {
+    const FrameChange& frame = context_.frame;
+    const auto fill = [=](auto& values, auto&& valueOf) {
+      if (!values.empty()) {
+        std::transform(first, last, &values[begin], valueOf);
+      }
+    };
+    fill(response_.clearances, [](const Clearance& c) { return c.distance; });
+    fill(response_.points_on_segment,
+         [&](const Clearance& c) { return toPoint(frame.pointBack(c.on_segment)); });
+    fill(response_.points_on_box,
+         [&](const Clearance& c) { return toPoint(frame.pointBack(c.on_box)); });
+    fill(response_.nearest_boxes, [](const Clearance& c) { return indexOf(c.box); });
+  }
+  std::uint8_t stateOf(bool blocked) const {
+    return blocked    ? CheckSegmentsResponse::BLOCKED
+           : trusted_ ? CheckSegmentsResponse::CLEAR
+                      : CheckSegmentsResponse::UNKNOWN;
   }
 
   const CheckSegmentsRequest& request_;
@@ -219,9 +242,7 @@ void check(const CheckSegmentsRequest& request, const Limits& limits) {
   const std::size_t segments = segmentCount(request);
   checkCount("segments", segments, limits);
   checkLength("radii", request.radii.size(), segments, true);
-  for (std::size_t i = 0; i < request.points.size(); ++i) {
-    checkPoint({"points", i}, fromMessage(request.points[i]), limits);
-  }
+  checkPoints("points", request.points, limits);
   for (std::size_t i = 0; i < request.radii.size(); ++i) {
     checkRadius({"radii", i}, request.radii[i], limits);
   }
@@ -294,15 +315,12 @@ void answer(const CheckSegmentsRequest& request, Context& context,
   std::size_t answered = 0;
   bool ended = false;
   for (; request.stop_at_blocked && answered < segments && !ended; ++answered) {
-    batch.answerSome(answered, answered + 1);
+    batch.answerPart(answered, answered + 1);
     ended = response.states[answered] == CheckSegmentsResponse::BLOCKED;
   }
   forEachCountedPart(ended ? 0 : segments - answered, context.batch_threads, context.totals,
                      [&](std::size_t begin, std::size_t end) {
-                       for (; begin < end; begin += kSegmentsAtOnce) {
-                         batch.answerSome(answered + begin,
-                                          answered + std::min(begin + kSegmentsAtOnce, end));
-                       }
+                       batch.answerPart(answered + begin, answered + end);
                      });
   batch.draw();
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/request_checks.h"
 
+#include "ros/conversions.h"
+#include "ros/magnitudes.h"
+
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -25,6 +28,26 @@ void checkFinite(const Field& field, const Vector3& vector) {
   if (!vector.allFinite()) {
     refuse(field, "is " + print(vector) + ": give finite numbers");
   }
+}
+
+/// Of all numbers of an array of points or vectors.
+template <class Message>
+Magnitudes magnitudesOf(const std::vector<Message>& array) {
+  static_assert(sizeof(Message) == 3 * sizeof(double), "the numbers of an array lie in a row");
+  Magnitudes magnitudes;
+  if (!array.empty()) {
+    magnitudes.see(&array.front().x, 3 * array.size());
+  }
+  return magnitudes;
+}
+
+/// Whether one of them is 0.
+bool haveZero(const std::vector<geometry_msgs::Vector3>& vectors) {
+  bool have = false;
+  for (const geometry_msgs::Vector3& v : vectors) {
+    have = have || (v.x == 0.0 && v.y == 0.0 && v.z == 0.0);
+  }
+  return have;
 }
 
 }  // namespace
@@ -59,6 +82,30 @@ void refuseRadius(const Field& field, double radius, const Limits& limits) {
   refuse(field, "is " + print(radius) + ": " +
                     (radius >= 0 && std::isfinite(radius) ? allowedCoordinates(limits.coordinate)
                                                           : "give finite metres >= 0"));
+}
+
+// All numbers are looked at together: most requests have none that is bad.
+void checkPoints(const char* name, const std::vector<geometry_msgs::Point>& points,
+                 const Limits& limits) {
+  const Magnitudes all = magnitudesOf(points);
+  if (all.largest() <= limits.coordinate && all.smallest() >= kSmallestCoordinate) {
+    return;
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    checkPoint({name, i}, fromMessage(points[i]), limits);
+  }
+}
+
+void checkDirections(const char* name, const std::vector<geometry_msgs::Vector3>& directions) {
+  const Magnitudes all = magnitudesOf(directions);
+  const double largest = all.largest();
+  if (largest <= std::numeric_limits<double>::max() && all.smallest() >= kSmallestSlope * largest &&
+      !haveZero(directions)) {
+    return;
+  }
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    checkDirection({name, i}, fromMessage(directions[i]));
+  }
 }
 
 void checkTime(const Field& field, const ros::Time& time) {

@@ -12,7 +12,10 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <vector>
 
+#include <geometry_msgs/Point.h>
+#include <geometry_msgs/Vector3.h>
 #include <ros/time.h>
 #include <std_msgs/Header.h>
 
@@ -57,6 +60,10 @@ inline void checkRadius(const Field& field, double radius, const Limits& limits)
     refuseRadius(field, radius, limits);
   }
 }
+/// The same of each element of an array.
+void checkPoints(const char* name, const std::vector<geometry_msgs::Point>& points,
+                 const Limits& limits);
+void checkDirections(const char* name, const std::vector<geometry_msgs::Vector3>& directions);
 /// Of ROS: fewer nanoseconds than a second has.
 void checkTime(const Field& field, const ros::Time& time);
 /// An array of one element a query, or a single one for all, or, if `may_be_empty`, none.

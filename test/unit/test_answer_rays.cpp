@@ -129,6 +129,21 @@ TEST(CastRays, AreTheSameOnManyThreads) {
   }
 }
 
+TEST(CastRays, MayShareAnOriginAndARange) {
+  const Snapshot snapshot = randomSnapshot(60, 1);
+  CastRaysRequest each = randomRays(500, 2);
+  each.origins.assign(500, each.origins[0]);
+  each.max_ranges.assign(500, 7.0);
+  CastRaysRequest shared = each;
+  shared.origins.resize(1);
+  shared.max_ranges.resize(1);
+  for (const FrameChange& frame : {FrameChange(), crookedFrame()}) {
+    const CastRaysResponse response = ask(each, snapshot, frame);
+    EXPECT_GT(std::count(response.hits.begin(), response.hits.end(), 1), 30);
+    EXPECT_EQ(bytesOf(response), bytesOf(ask(shared, snapshot, frame)));
+  }
+}
+
 TEST(CastRays, NameTheFirstRayAtFaultOnManyThreads) {
   CastRaysRequest request = randomRays(3000, 2);
   for (std::size_t i = 1234; i < 3000; ++i) {
@@ -230,6 +245,45 @@ TEST(Rays, AreRefusedByTheIndexAtFault) {
   EXPECT_EQ(with([](auto& r) { r.directions.resize(4, vector(1, 0, 0)); }),
             "the request has 4 rays, at most 3 are taken: split it, or raise "
             "~max_queries_per_call");
+}
+
+TEST(Rays, AtFaultAreFoundAmongMany) {
+  CastRaysRequest request = randomRays(1000, 2);
+  request.header.frame_id = "map";
+  EXPECT_EQ(refusal(request), "");
+  // Not alike in length, and with components of 0: each is a direction by itself.
+  request.directions[3] = vector(0, 0, -1e-150);
+  request.directions[4] = vector(1e250, 0, 1e200);
+  EXPECT_EQ(refusal(request), "");
+  const auto with = [&](const geometry_msgs::Vector3& direction,
+                        const geometry_msgs::Point& origin) {
+    CastRaysRequest changed = request;
+    changed.directions[777] = direction;
+    changed.origins[888] = origin;
+    return refusal(changed);
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const geometry_msgs::Vector3 along_x = vector(1, 0, 0);
+  const geometry_msgs::Point zero = point(0, 0, 0);
+  EXPECT_EQ(with(along_x, zero), "");
+  EXPECT_EQ(with(vector(-0.0, 0, 0), zero),
+            "directions[777] is zero: give a direction of any other length");
+  EXPECT_EQ(with(vector(1, nan, 0), zero), "directions[777] is (1, nan, 0): give finite numbers");
+  EXPECT_EQ(
+      with(vector(1, 1e-61, 0), zero),
+      "directions[777] is (1, 1e-61, 0): give 0 for what is less than 1e-60 times its longest "
+      "component");
+  EXPECT_EQ(with(along_x, point(0, kInf, 0)), "origins[888] is (0, inf, 0): give finite numbers");
+  for (const double bad : {1.001e7, 9e-201}) {
+    EXPECT_EQ(with(along_x, point(0, 0, bad)).substr(0, 19), "origins[888] is (0,");
+  }
+}
+
+TEST(Rays, ThatAreZeroAreFoundAmongThoseThatAreNot) {
+  CastRaysRequest request = randomRays(1000, 2);
+  request.header.frame_id = "map";
+  request.directions[999] = vector(0, 0, 0);
+  EXPECT_EQ(refusal(request), "directions[999] is zero: give a direction of any other length");
 }
 
 TEST(Rays, ThatOverflowInTheFixedFrameAreRefused) {

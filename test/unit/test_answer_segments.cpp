@@ -180,6 +180,22 @@ TEST(CheckSegments, StatesDoNotDependOnWhatIsWanted) {
   EXPECT_EQ(ask(request, snapshot).states, bare.states);
 }
 
+TEST(CheckSegments, MayShareARadius) {
+  const Snapshot snapshot = randomSnapshot(12, 3);
+  CheckSegmentsRequest each = randomPath(301, 4);
+  for (const std::vector<double>& radii : {std::vector<double>{}, {0.0}, {0.5}}) {
+    each.radii.assign(300, radii.empty() ? 0.0 : radii[0]);
+    CheckSegmentsRequest shared = each;
+    shared.radii = radii;
+    for (const FrameChange& frame : {FrameChange(), crookedFrame()}) {
+      const CheckSegmentsResponse response = ask(each, snapshot, frame);
+      EXPECT_GT(std::count(response.states.begin(), response.states.end(), kBlocked), 30);
+      EXPECT_GT(std::count(response.states.begin(), response.states.end(), kClear), 60);
+      EXPECT_EQ(bytesOf(response), bytesOf(ask(shared, snapshot, frame)));
+    }
+  }
+}
+
 TEST(CheckSegments, AreDecidedExactlyWhereTheRadiusIsTheRoundedClearance) {
   const Snapshot snapshot = randomSnapshot(12, 3);
   CheckSegmentsRequest request = randomPath(301, 4);
