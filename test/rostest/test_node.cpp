@@ -11,10 +11,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <future>
+#include <iterator>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -76,6 +79,19 @@ class Process {
       ticks += i >= 14 ? std::stod(field) : 0;
     }
     return ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
+  }
+
+  /// Threads that it has, once none has come or gone for 0.2 s.
+  std::ptrdiff_t threads() const {
+    std::ptrdiff_t threads = 0;
+    for (int unchanged = 0; unchanged < 10; ++unchanged) {
+      const std::filesystem::directory_iterator tasks("/proc/" + std::to_string(pid_) + "/task");
+      const std::ptrdiff_t now = std::distance(begin(tasks), end(tasks));
+      unchanged = now == threads ? unchanged : 0;
+      threads = now;
+      ros::WallDuration(0.02).sleep();
+    }
+    return threads;
   }
 
   Ending wait() {
@@ -164,6 +180,37 @@ TEST(Node, EndsInTheMiddleOfABatch) {
   if (answered.get()) {
     EXPECT_FALSE(batch.response.success);
     EXPECT_EQ(batch.response.message, "the node shuts down: ask again when it is back");
+  }
+}
+
+/// Threads that a node has before and after a batch.
+struct Threads {
+  std::ptrdiff_t before = 0;
+  std::ptrdiff_t after = 0;
+};
+
+Threads threadsOf(const std::string& name, int service_threads, int batch_threads) {
+  const Process process({"__name:=" + name, "_service_threads:=" + std::to_string(service_threads),
+                         "_batch_threads:=" + std::to_string(batch_threads)});
+  EXPECT_TRUE(ros::service::waitForService("/" + name + "/cast_rays", ros::Duration(10)));
+  box_query::CastRays few = box_query::test::longBatch();
+  few.request.directions.resize(1);
+  box_query::CastRays many = box_query::test::longBatch();
+  Threads threads;
+  EXPECT_TRUE(ros::service::call("/" + name + "/cast_rays", few));
+  threads.before = process.threads();
+  EXPECT_TRUE(ros::service::call("/" + name + "/cast_rays", many));
+  threads.after = process.threads();
+  return threads;
+}
+
+TEST(Node, HasTheThreadsThatItIsTold) {
+  const Threads one = threadsOf("one_thread", 1, 1);
+  EXPECT_EQ(one.after, one.before) << "a batch needs no other";
+  const Threads more = threadsOf("more_threads", 4, 2);
+  EXPECT_EQ(more.before, one.before + 3);
+  if (std::thread::hardware_concurrency() > 1) {
+    EXPECT_GT(more.after, more.before) << "a batch has two";
   }
 }
 

@@ -226,6 +226,21 @@ TEST_F(SceneMonitorTf, LetsOnlySoManyWait) {
   EXPECT_EQ(monitor_->currentScene()->topics[0].rejected, 0U);
 }
 
+TEST_F(SceneMonitorTf, KnowsTransformsForItsTransformHistory) {
+  parameters_.transform_history = 30.0;
+  SceneMonitor patient(ros::NodeHandle(), parameters_);
+  parameters_.transform_history = 2.0;
+  start();
+  geometry_msgs::TransformStamped found;
+  for (const int second : {10, 20}) {
+    move("cart", ros::Time(second), second);
+    ASSERT_EQ(patient.lookUpTransform("map", "cart", ros::Time(second), 10.0, found), "");
+  }
+  EXPECT_EQ(patient.lookUpTransform("map", "cart", ros::Time(15), 0.0, found), "");
+  EXPECT_EQ(found.transform.translation.x, 15.0);
+  EXPECT_NE(monitor_->lookUpTransform("map", "cart", ros::Time(15), 0.0, found), "");
+}
+
 TEST_F(SceneMonitorTf, LooksUpTransformsThatComeInTime) {
   start();
   geometry_msgs::TransformStamped found;

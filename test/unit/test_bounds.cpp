@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bounds against misuse: what a topic may have at once.
+// Bounds against misuse: what a topic may have at once, and what a message may carry.
 #include "ros/box_tracker.h"
 #include "ros/whole_set.h"
+#include "unit/source_fixture.h"
 
 #include <cmath>
 #include <limits>
@@ -10,6 +11,7 @@
 
 #include <gtest/gtest.h>
 #include <tf2/buffer_core.h>
+#include <visualization_msgs/Marker.h>
 
 namespace box_query {
 namespace {
@@ -179,6 +181,37 @@ TEST_F(Bounds, OfWhatWaitsMakeTheSceneIncompleteUntilTheTopicIsCleared) {
   tracker_.forgetBefore(0, tracker_.lastWord());
   EXPECT_EQ(reason(), "") << "new publishers begin anew";
   EXPECT_EQ(tracker_.counts().dropped_messages, 8U);
+}
+
+/// Whether a list of `boxes` boxes is taken: the sentence if not.
+std::string refusal(const Parameters& parameters, std::size_t boxes, std::size_t name_length,
+                    double size) {
+  visualization_msgs::Marker list;
+  list.header.frame_id = "map";
+  list.ns = std::string(name_length, 'n');
+  list.type = visualization_msgs::Marker::CUBE_LIST;
+  list.pose.orientation.w = 1.0;
+  list.scale.x = list.scale.y = list.scale.z = size;
+  list.points.resize(boxes);
+  const test::Bytes bytes = test::wire(list);
+  const DecodedMessage message = decodeMessage(test::sourceNamed("visualization_msgs/Marker"),
+                                               bytes.data(), bytes.size(), Limits(parameters));
+  return message.problem.empty() ? message.changes.at(0).problem : message.problem;
+}
+
+TEST(BoundsOfAMessage, AreThoseOfTheParameters) {
+  Parameters parameters;
+  parameters.max_boxes_per_message = 3;
+  parameters.max_name_length = 4;
+  parameters.max_coordinate = 5.0;
+  EXPECT_EQ(refusal(parameters, 3, 4, 5.0), "");
+  for (const auto& [refused, name] :
+       {std::pair{refusal(parameters, 4, 4, 5.0),
+                  "more than 3 boxes; publish fewer or raise max_boxes_per_message"},
+        std::pair{refusal(parameters, 3, 5, 5.0), "raise ~max_name_length"},
+        std::pair{refusal(parameters, 3, 4, 5.5), "raise ~max_coordinate"}}) {
+    EXPECT_NE(refused.find(name), std::string::npos) << refused;
+  }
 }
 
 TEST(NearPlaces, HaveNoNaN) {

@@ -260,6 +260,38 @@ TEST(GarbageTransform, IsRefusedByTheNameOfItsFrame) {
   }
 }
 
+/// The sentence with which a batch is refused.
+std::string refusalOfBatch(const Parameters& parameters, std::size_t rays, std::size_t names,
+                           std::size_t name_length, double x) {
+  CastRaysRequest request;
+  request.header.frame_id = "map";
+  request.origins.assign(rays, point(x, 0, 0));
+  request.directions.assign(rays, vector(1, 0, 0));
+  request.labels.assign(names, std::string(name_length, 'l'));
+  try {
+    check(request, Limits(parameters));
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(BoundsOfARequest, AreThoseOfTheParameters) {
+  Parameters parameters;
+  parameters.max_queries_per_call = 2;
+  parameters.max_filter_names = 3;
+  parameters.max_name_length = 4;
+  parameters.max_coordinate = 5.0;
+  EXPECT_EQ(refusalOfBatch(parameters, 2, 3, 4, 5.0), "");
+  for (const auto& [refused, name] :
+       {std::pair{refusalOfBatch(parameters, 3, 3, 4, 5.0), "~max_queries_per_call"},
+        std::pair{refusalOfBatch(parameters, 2, 4, 4, 5.0), "~max_filter_names"},
+        std::pair{refusalOfBatch(parameters, 2, 3, 5, 5.0), "~max_name_length"},
+        std::pair{refusalOfBatch(parameters, 2, 3, 4, 5.5), "~max_coordinate"}}) {
+    EXPECT_NE(refused.find(name), std::string::npos) << refused;
+  }
+}
+
 TEST(GarbageFilters, AreNoLongerThanAllowed) {
   const auto with = [](std::size_t names, auto field) {
     GetSceneRequest request;

@@ -3,7 +3,12 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <regex>
 #include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <xmlrpcpp/XmlRpcValue.h>
@@ -153,6 +158,112 @@ TEST(Parameters, AreAllDocumentedWithinTheirRanges) {
   EXPECT_TRUE(contains(table, "| `~marker_rate` | double | 10 | 0.1 to 100 [Hz] |")) << table;
   EXPECT_TRUE(contains(table, "| `~kept_scenes` | int | 100 | 1 to 10000 |")) << table;
   EXPECT_TRUE(contains(table, "| `~fixed_frame` | string | map |")) << table;
+}
+
+using Member = std::variant<int Parameters::*, double Parameters::*>;
+using P = Parameters;
+const std::map<std::string, Member> kNumbers = {
+    {"transform_timeout", &P::transform_timeout},
+    {"waiting_timeout", &P::waiting_timeout},
+    {"max_waiting_boxes", &P::max_waiting_boxes},
+    {"transform_history", &P::transform_history},
+    {"max_boxes_per_message", &P::max_boxes_per_message},
+    {"max_backlog_memory", &P::max_backlog_memory},
+    {"max_boxes_per_topic", &P::max_boxes_per_topic},
+    {"max_namespaces", &P::max_namespaces},
+    {"max_queries_per_call", &P::max_queries_per_call},
+    {"max_coordinate", &P::max_coordinate},
+    {"max_name_length", &P::max_name_length},
+    {"max_filter_names", &P::max_filter_names},
+    {"service_threads", &P::service_threads},
+    {"batch_threads", &P::batch_threads},
+    {"build_ahead", &P::build_ahead},
+    {"kept_scenes", &P::kept_scenes},
+    {"max_kept_boxes", &P::max_kept_boxes},
+    {"history", &P::history},
+    {"max_past_scenes", &P::max_past_scenes},
+    {"max_history_memory", &P::max_history_memory},
+    {"marker_rate", &P::marker_rate},
+    {"marker_lifetime", &P::marker_lifetime},
+    {"max_marker_queries", &P::max_marker_queries},
+    {"max_marker_labels", &P::max_marker_labels},
+};
+
+/// What the documentation says of a number.
+struct DocumentedNumber {
+  std::string name;
+  bool is_int;
+  double usual;
+  double min;
+  double max;
+};
+
+std::vector<DocumentedNumber> documentedNumbers() {
+  const std::string table = Parameters::documentation();
+  const std::regex row(R"(\| `~(\w+)` \| (int|double) \| (\S+) \| (\S+) to (\S+) )");
+  std::vector<DocumentedNumber> numbers;
+  for (std::sregex_iterator at(table.begin(), table.end(), row), end; at != end; ++at) {
+    const std::smatch& found = *at;
+    numbers.push_back({found[1], found[2] == "int", std::stod(found[3]), std::stod(found[4]),
+                       std::stod(found[5])});
+  }
+  return numbers;
+}
+
+XmlRpcValue valueOf(const DocumentedNumber& number, double value) {
+  return number.is_int ? XmlRpcValue(static_cast<int>(value)) : XmlRpcValue(value);
+}
+
+double valueIn(const Parameters& parameters, const std::string& name) {
+  return std::visit([&](auto member) { return static_cast<double>(parameters.*member); },
+                    kNumbers.at(name));
+}
+
+TEST(NumbersAmongParameters, AreTakenWithinTheirRangesAndRefusedBeyond) {
+  const std::vector<DocumentedNumber> numbers = documentedNumbers();
+  ASSERT_EQ(numbers.size(), kNumbers.size());
+  for (const DocumentedNumber& number : numbers) {
+    SCOPED_TRACE(number.name);
+    EXPECT_EQ(valueIn(Parameters(), number.name), number.usual);
+    for (const double value : {number.min, number.usual, number.max}) {
+      const Parameters read = readValues(structOf(number.name, valueOf(number, value)));
+      EXPECT_EQ(valueIn(read, number.name), value);
+    }
+    const double step = number.is_int ? 1.0 : 1e-9 * number.max;
+    std::vector<XmlRpcValue> refused = {valueOf(number, number.min - step),
+                                        valueOf(number, number.max + step),
+                                        XmlRpcValue(std::nan("")),
+                                        XmlRpcValue(1e300),
+                                        XmlRpcValue(std::numeric_limits<double>::infinity()),
+                                        XmlRpcValue(std::numeric_limits<int>::min()),
+                                        XmlRpcValue(std::numeric_limits<int>::max()),
+                                        XmlRpcValue(true),
+                                        XmlRpcValue("1"),
+                                        XmlRpcValue(""),
+                                        listOf({}),
+                                        structOf("a", XmlRpcValue(1))};
+    if (number.max >= std::numeric_limits<int>::max()) {
+      refused.erase(refused.begin() + 6);  // within its range
+    }
+    for (const XmlRpcValue& value : refused) {
+      EXPECT_EQ(refusal(number.name, value).find("parameter /node/" + number.name + " is "), 0U)
+          << value.toXml();
+    }
+  }
+}
+
+TEST(NumbersAmongParameters, GoEachToItsOwnPlace) {
+  XmlRpcValue values;
+  std::map<std::string, double> expected;
+  for (const DocumentedNumber& number : documentedNumbers()) {
+    const double value = 2.0 + static_cast<double>(expected.size());
+    values[number.name] = valueOf(number, value);
+    expected[number.name] = value;
+  }
+  const Parameters read = readValues(values);
+  for (const auto& [name, value] : expected) {
+    EXPECT_EQ(valueIn(read, name), value) << name;
+  }
 }
 
 }  // namespace
