@@ -46,6 +46,7 @@ namespace avx2 {
 #include "kernels/generic/wide.h"
 #include "kernels/generic/cross.h"
 #include "kernels/generic/refine.h"
+#include "kernels/generic/refine_together.h"
 // clang-format on
 }  // namespace avx2
 
@@ -59,7 +60,8 @@ const Kernels kAvx2 = {"avx2",
                        avx2::nearest,
                        avx2::nearestTogether,
                        avx2::cross,
-                       avx2::refine};
+                       avx2::refine,
+                       avx2::refineTogether};
 
 }  // namespace box_query::kernels
 

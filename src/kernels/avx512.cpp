@@ -47,6 +47,7 @@ namespace avx512 {
 #include "kernels/generic/wide.h"
 #include "kernels/generic/cross.h"
 #include "kernels/generic/refine.h"
+#include "kernels/generic/refine_together.h"
 // clang-format on
 }  // namespace avx512
 
@@ -60,7 +61,8 @@ const Kernels kAvx512 = {"avx512",
                          avx512::nearest,
                          avx512::nearestTogether,
                          avx512::cross,
-                         avx512::refine};
+                         avx512::refine,
+                         avx512::refineTogether};
 
 }  // namespace box_query::kernels
 

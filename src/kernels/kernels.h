@@ -6,6 +6,8 @@
 
 #include "kernels/scene_view.h"
 
+#include <cstdint>
+
 namespace box_query::kernels {
 
 using Together = void (*)(const SceneView&, const RayQueries&, Deliver deliver, void* context,
@@ -54,6 +56,10 @@ struct Kernels {
   /// after the other.
   /// @return whether the box is taken
   bool (*refine)(const RefineQuery&, Refined&);
+
+  /// Works out eight distances at once. Null where it is faster to do so one by one.
+  /// @return a bit for each that is certain; the others are nothing
+  std::uint32_t (*refine_together)(const RefineQueries&, RefinedEach&);
 };
 
 extern const Kernels kPortable;

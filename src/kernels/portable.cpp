@@ -41,6 +41,7 @@ const Kernels kPortable = {"portable",
                            portable::nearest,
                            portable::nearestTogether,
                            nullptr,
+                           nullptr,
                            nullptr};
 
 }  // namespace box_query::kernels

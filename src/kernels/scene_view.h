@@ -230,4 +230,25 @@ struct Refined {
   double distance_error;
 };
 
+constexpr int kRefineLanes = 8;
+
+/// Segments, each with an oriented box that it certainly does not meet, and a parameter near the
+/// one where it is nearest.
+struct alignas(64) RefineQueries {
+  double quaternion[4][kRefineLanes];  ///< x, y, z, w
+  double center[3][kRefineLanes];
+  double half_extents[3][kRefineLanes];
+  double start[3][kRefineLanes];
+  double end[3][kRefineLanes];
+  double t[kRefineLanes];
+};
+
+/// Of each: SegmentDistance.
+struct alignas(64) RefinedEach {
+  double distance[kRefineLanes];
+  double t[kRefineLanes];
+  double on_segment[3][kRefineLanes];
+  double on_box[3][kRefineLanes];
+};
+
 }  // namespace box_query::kernels

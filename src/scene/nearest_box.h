@@ -82,6 +82,12 @@ class NearestBox {
     return nearest_.box == kNoBox ? nullptr : &boxes_->simplest(nearest_.box);
   }
 
+  std::size_t index() const { return nearest_.box; }
+
+  /// Whether the box is certainly not met; and about where it is nearest.
+  bool isApart() const { return nearest_.bounds.lower > 0.0; }
+  double guess() const { return estimate_.guess.t; }
+
   Clearance clearance() const {
     if (nearest_.box == kNoBox) {
       return {};

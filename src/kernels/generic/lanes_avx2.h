@@ -159,3 +159,93 @@ static inline void loadRays(const double* rays, Double4 center, Float16* origin,
 
 /// What boxes of a block are compared in, where there are more than eight.
 using BlockLanes = Float8;
+
+/// Eight doubles in two AVX registers.
+struct Double8 {
+  __m256d v[2];
+};
+
+static inline Double8 load8(const double* p) {
+  return {{_mm256_load_pd(p), _mm256_load_pd(p + 4)}};
+}
+static inline Double8 all8(double x) {
+  return {{_mm256_set1_pd(x), _mm256_set1_pd(x)}};
+}
+static inline void store8(double* p, const Double8& a) {
+  _mm256_store_pd(p, a.v[0]);
+  _mm256_store_pd(p + 4, a.v[1]);
+}
+static inline Double8 operator+(const Double8& a, const Double8& b) {
+  return {{_mm256_add_pd(a.v[0], b.v[0]), _mm256_add_pd(a.v[1], b.v[1])}};
+}
+static inline Double8 operator-(const Double8& a, const Double8& b) {
+  return {{_mm256_sub_pd(a.v[0], b.v[0]), _mm256_sub_pd(a.v[1], b.v[1])}};
+}
+static inline Double8 operator*(const Double8& a, const Double8& b) {
+  return {{_mm256_mul_pd(a.v[0], b.v[0]), _mm256_mul_pd(a.v[1], b.v[1])}};
+}
+static inline Double8 operator/(const Double8& a, const Double8& b) {
+  return {{_mm256_div_pd(a.v[0], b.v[0]), _mm256_div_pd(a.v[1], b.v[1])}};
+}
+/// a * b + c
+static inline Double8 fused(const Double8& a, const Double8& b, const Double8& c) {
+  return {{_mm256_fmadd_pd(a.v[0], b.v[0], c.v[0]), _mm256_fmadd_pd(a.v[1], b.v[1], c.v[1])}};
+}
+/// The rest of the product p = a * b, exactly, where nothing underflows.
+static inline Double8 restOfProduct(const Double8& a, const Double8& b, const Double8& p) {
+  return {{_mm256_fmsub_pd(a.v[0], b.v[0], p.v[0]), _mm256_fmsub_pd(a.v[1], b.v[1], p.v[1])}};
+}
+static inline Double8 negated(const Double8& a) {
+  return {
+      {_mm256_xor_pd(a.v[0], _mm256_set1_pd(-0.0)), _mm256_xor_pd(a.v[1], _mm256_set1_pd(-0.0))}};
+}
+static inline Double8 magnitude(const Double8& a) {
+  return {{_mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v[0]),
+           _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v[1])}};
+}
+/// a times -1 where b is negative.
+static inline Double8 withSignOf(const Double8& a, const Double8& b) {
+  return {{_mm256_xor_pd(a.v[0], _mm256_and_pd(b.v[0], _mm256_set1_pd(-0.0))),
+           _mm256_xor_pd(a.v[1], _mm256_and_pd(b.v[1], _mm256_set1_pd(-0.0)))}};
+}
+/// (Of equal ones, b.)
+static inline Double8 larger(const Double8& a, const Double8& b) {
+  return {{_mm256_max_pd(a.v[0], b.v[0]), _mm256_max_pd(a.v[1], b.v[1])}};
+}
+static inline Double8 smaller(const Double8& a, const Double8& b) {
+  return {{_mm256_min_pd(a.v[0], b.v[0]), _mm256_min_pd(a.v[1], b.v[1])}};
+}
+static inline Double8 squareRoot(const Double8& a) {
+  return {{_mm256_sqrt_pd(a.v[0]), _mm256_sqrt_pd(a.v[1])}};
+}
+
+/// Lanes in which something holds.
+struct Mask8 {
+  __m256d v[2];
+};
+static inline std::uint32_t bitsOf(const Mask8& m) {
+  return static_cast<std::uint32_t>(_mm256_movemask_pd(m.v[0]) | (_mm256_movemask_pd(m.v[1]) << 4));
+}
+static inline Mask8 operator&(const Mask8& a, const Mask8& b) {
+  return {{_mm256_and_pd(a.v[0], b.v[0]), _mm256_and_pd(a.v[1], b.v[1])}};
+}
+static inline Mask8 operator|(const Mask8& a, const Mask8& b) {
+  return {{_mm256_or_pd(a.v[0], b.v[0]), _mm256_or_pd(a.v[1], b.v[1])}};
+}
+static inline Mask8 operator>(const Double8& a, const Double8& b) {
+  return {{_mm256_cmp_pd(a.v[0], b.v[0], _CMP_GT_OQ), _mm256_cmp_pd(a.v[1], b.v[1], _CMP_GT_OQ)}};
+}
+static inline Mask8 operator==(const Double8& a, const Double8& b) {
+  return {{_mm256_cmp_pd(a.v[0], b.v[0], _CMP_EQ_OQ), _mm256_cmp_pd(a.v[1], b.v[1], _CMP_EQ_OQ)}};
+}
+/// a, or 0, where m holds.
+static inline Double8 onlyWhere(const Mask8& m, const Double8& a) {
+  return {{_mm256_and_pd(m.v[0], a.v[0]), _mm256_and_pd(m.v[1], a.v[1])}};
+}
+static inline Double8 zeroWhere(const Mask8& m, const Double8& a) {
+  return {{_mm256_andnot_pd(m.v[0], a.v[0]), _mm256_andnot_pd(m.v[1], a.v[1])}};
+}
+/// a where m holds, b elsewhere.
+static inline Double8 either(const Mask8& m, const Double8& a, const Double8& b) {
+  return {{_mm256_blendv_pd(b.v[0], a.v[0], m.v[0]), _mm256_blendv_pd(b.v[1], a.v[1], m.v[1])}};
+}

@@ -8,6 +8,7 @@ struct Float16 {
 /// GCC 12 warns of uninitialised registers in its own unmasked minimum and maximum (its bug
 /// 105593); with a full mask it makes the same instructions.
 constexpr __mmask16 kAllLanes = 0xffff;
+constexpr __mmask8 kEightLanes = 0xff;
 
 static inline Float16 load16(const float* p) {
   return {_mm512_load_ps(p)};
@@ -126,3 +127,89 @@ static inline void loadRays(const double* rays, Double4 center, Float16* origin,
 
 /// What boxes of a block are compared in, where there are more than eight.
 using BlockLanes = Float16;
+
+/// Eight doubles in an AVX-512 register.
+struct Double8 {
+  __m512d v;
+};
+
+static inline Double8 load8(const double* p) {
+  return {_mm512_load_pd(p)};
+}
+static inline Double8 all8(double x) {
+  return {_mm512_set1_pd(x)};
+}
+static inline void store8(double* p, Double8 a) {
+  _mm512_store_pd(p, a.v);
+}
+static inline Double8 operator+(Double8 a, Double8 b) {
+  return {_mm512_add_pd(a.v, b.v)};
+}
+static inline Double8 operator-(Double8 a, Double8 b) {
+  return {_mm512_sub_pd(a.v, b.v)};
+}
+static inline Double8 operator*(Double8 a, Double8 b) {
+  return {_mm512_mul_pd(a.v, b.v)};
+}
+static inline Double8 operator/(Double8 a, Double8 b) {
+  return {_mm512_div_pd(a.v, b.v)};
+}
+/// a * b + c
+static inline Double8 fused(Double8 a, Double8 b, Double8 c) {
+  return {_mm512_fmadd_pd(a.v, b.v, c.v)};
+}
+/// The rest of the product p = a * b, exactly, where nothing underflows.
+static inline Double8 restOfProduct(Double8 a, Double8 b, Double8 p) {
+  return {_mm512_fmsub_pd(a.v, b.v, p.v)};
+}
+static inline Double8 negated(Double8 a) {
+  return {_mm512_xor_pd(a.v, _mm512_set1_pd(-0.0))};
+}
+static inline Double8 magnitude(Double8 a) {
+  return {_mm512_andnot_pd(_mm512_set1_pd(-0.0), a.v)};
+}
+/// a times -1 where b is negative.
+static inline Double8 withSignOf(Double8 a, Double8 b) {
+  return {_mm512_xor_pd(a.v, _mm512_and_pd(b.v, _mm512_set1_pd(-0.0)))};
+}
+/// (Of equal ones, b.)
+static inline Double8 larger(Double8 a, Double8 b) {
+  return {_mm512_maskz_max_pd(kEightLanes, a.v, b.v)};
+}
+static inline Double8 smaller(Double8 a, Double8 b) {
+  return {_mm512_maskz_min_pd(kEightLanes, a.v, b.v)};
+}
+static inline Double8 squareRoot(Double8 a) {
+  return {_mm512_maskz_sqrt_pd(kEightLanes, a.v)};
+}
+
+/// Lanes in which something holds.
+struct Mask8 {
+  __mmask8 bits;
+};
+static inline std::uint32_t bitsOf(Mask8 m) {
+  return m.bits;
+}
+static inline Mask8 operator&(Mask8 a, Mask8 b) {
+  return {static_cast<__mmask8>(a.bits & b.bits)};
+}
+static inline Mask8 operator|(Mask8 a, Mask8 b) {
+  return {static_cast<__mmask8>(a.bits | b.bits)};
+}
+static inline Mask8 operator>(Double8 a, Double8 b) {
+  return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_GT_OQ)};
+}
+static inline Mask8 operator==(Double8 a, Double8 b) {
+  return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_EQ_OQ)};
+}
+/// a, or 0, where m holds.
+static inline Double8 onlyWhere(Mask8 m, Double8 a) {
+  return {_mm512_maskz_mov_pd(m.bits, a.v)};
+}
+static inline Double8 zeroWhere(Mask8 m, Double8 a) {
+  return {_mm512_maskz_mov_pd(static_cast<__mmask8>(~m.bits), a.v)};
+}
+/// a where m holds, b elsewhere.
+static inline Double8 either(Mask8 m, Double8 a, Double8 b) {
+  return {_mm512_mask_mov_pd(b.v, m.bits, a.v)};
+}

@@ -11,12 +11,13 @@
 static inline Wide4 wideSumOf3(const Wide4& a) {
   const Wide4 two = twoSum(a.hi, turned(a.hi));
   const Wide4 three = twoSum(two.hi, turnedTwice(a.hi));
-  return normalized({three.hi, (two.lo + three.lo) + sumOf3(a.lo)});
+  return fastTwoSum(three.hi, (two.lo + three.lo) + sumOf3(a.lo));
 }
 
 /// a b, the second part of what is not normalized and their product left out.
-static inline Wide4 product(const Wide4& a, const Wide4& b) {
-  const Wide4 p = twoProduct(a.hi, b.hi);
+template <typename Lanes>
+static inline Wide<Lanes> product(const Wide<Lanes>& a, const Wide<Lanes>& b) {
+  const Wide<Lanes> p = twoProduct(a.hi, b.hi);
   return {p.hi, fused(a.hi, b.lo, fused(a.lo, b.hi, p.lo))};
 }
 

@@ -1,38 +1,46 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Double-doubles (exact/double_double.h), four at a time, and what exact/clip.h makes of a box and
-// a component in them, all three axes side by side.
+// Double-doubles (exact/double_double.h), several at a time, and what exact/clip.h makes of a box
+// and a component in them, all three axes side by side.
 
 /// The unevaluated sum hi + lo.
-struct Wide4 {
-  Double4 hi;
-  Double4 lo;
+template <typename Lanes>
+struct Wide {
+  Lanes hi;
+  Lanes lo;
 };
+using Wide4 = Wide<Double4>;
 
-static inline Wide4 twoSum(Double4 a, Double4 b) {
-  const Double4 sum = a + b;
-  const Double4 rest = sum - a;
+template <typename Lanes>
+static inline Wide<Lanes> twoSum(const Lanes& a, const Lanes& b) {
+  const Lanes sum = a + b;
+  const Lanes rest = sum - a;
   return {sum, (a - (sum - rest)) + (b - rest)};
 }
-static inline Wide4 fastTwoSum(Double4 a, Double4 b) {
-  const Double4 sum = a + b;
+template <typename Lanes>
+static inline Wide<Lanes> fastTwoSum(const Lanes& a, const Lanes& b) {
+  const Lanes sum = a + b;
   return {sum, b - (sum - a)};
 }
-static inline Wide4 twoProduct(Double4 a, Double4 b) {
-  const Double4 product = a * b;
+template <typename Lanes>
+static inline Wide<Lanes> twoProduct(const Lanes& a, const Lanes& b) {
+  const Lanes product = a * b;
   return {product, restOfProduct(a, b, product)};
 }
 // None of these makes lo small beside hi again, which would be the longest part of the way to a
 // result; normalized() does where it matters.
-static inline Wide4 operator+(const Wide4& a, const Wide4& b) {
-  const Wide4 sum = twoSum(a.hi, b.hi);
+template <typename Lanes>
+static inline Wide<Lanes> operator+(const Wide<Lanes>& a, const Wide<Lanes>& b) {
+  const Wide<Lanes> sum = twoSum(a.hi, b.hi);
   return {sum.hi, sum.lo + (a.lo + b.lo)};
 }
-static inline Wide4 operator-(const Wide4& a, const Wide4& b) {
-  const Wide4 sum = twoSum(a.hi, negated(b.hi));
+template <typename Lanes>
+static inline Wide<Lanes> operator-(const Wide<Lanes>& a, const Wide<Lanes>& b) {
+  const Wide<Lanes> sum = twoSum(a.hi, negated(b.hi));
   return {sum.hi, sum.lo + (a.lo - b.lo)};
 }
-static inline Wide4 operator*(const Wide4& a, Double4 b) {
-  const Wide4 product = twoProduct(a.hi, b);
+template <typename Lanes>
+static inline Wide<Lanes> operator*(const Wide<Lanes>& a, const Lanes& b) {
+  const Wide<Lanes> product = twoProduct(a.hi, b);
   return {product.hi, fused(a.lo, b, product.lo)};
 }
 static inline Wide4 turned(const Wide4& a) {
@@ -41,23 +49,27 @@ static inline Wide4 turned(const Wide4& a) {
 static inline Wide4 turnedTwice(const Wide4& a) {
   return {turnedTwice(a.hi), turnedTwice(a.lo)};
 }
-static inline Wide4 withSignOf(const Wide4& a, Double4 b) {
+template <typename Lanes>
+static inline Wide<Lanes> withSignOf(const Wide<Lanes>& a, const Lanes& b) {
   return {withSignOf(a.hi, b), withSignOf(a.lo, b)};
 }
-static inline Wide4 normalized(const Wide4& a) {
+template <typename Lanes>
+static inline Wide<Lanes> normalized(const Wide<Lanes>& a) {
   return fastTwoSum(a.hi, a.lo);
 }
 /// a0 b0 + a1 b1 + a2 b2.
-static inline Wide4 sumOfProducts(const Wide4& a0, const Wide4& b0, const Wide4& a1,
-                                  const Wide4& b1, const Wide4& a2, const Wide4& b2) {
-  const Wide4 p0 = twoProduct(a0.hi, b0.hi);
-  const Wide4 p1 = twoProduct(a1.hi, b1.hi);
-  const Wide4 p2 = twoProduct(a2.hi, b2.hi);
-  const Double4 c0 = p0.lo + fused(a0.hi, b0.lo, a0.lo * b0.hi);
-  const Double4 c1 = p1.lo + fused(a1.hi, b1.lo, a1.lo * b1.hi);
-  const Double4 c2 = p2.lo + fused(a2.hi, b2.lo, a2.lo * b2.hi);
-  const Wide4 s = twoSum(p0.hi, p1.hi);
-  const Wide4 r = twoSum(s.hi, p2.hi);
+template <typename Lanes>
+static inline Wide<Lanes> sumOfProducts(const Wide<Lanes>& a0, const Wide<Lanes>& b0,
+                                        const Wide<Lanes>& a1, const Wide<Lanes>& b1,
+                                        const Wide<Lanes>& a2, const Wide<Lanes>& b2) {
+  const Wide<Lanes> p0 = twoProduct(a0.hi, b0.hi);
+  const Wide<Lanes> p1 = twoProduct(a1.hi, b1.hi);
+  const Wide<Lanes> p2 = twoProduct(a2.hi, b2.hi);
+  const Lanes c0 = p0.lo + fused(a0.hi, b0.lo, a0.lo * b0.hi);
+  const Lanes c1 = p1.lo + fused(a1.hi, b1.lo, a1.lo * b1.hi);
+  const Lanes c2 = p2.lo + fused(a2.hi, b2.lo, a2.lo * b2.hi);
+  const Wide<Lanes> s = twoSum(p0.hi, p1.hi);
+  const Wide<Lanes> r = twoSum(s.hi, p2.hi);
   return {r.hi, (s.lo + r.lo) + ((c0 + c1) + c2)};
 }
 /// a / b of normalized ones, given q, which is a.hi / b.hi rounded as the product of a.hi and the
