@@ -28,9 +28,4 @@ class Node {
   Registration registration_;
 };
 
-/// For a process that is the node alone: has malloc keep what is freed for the next request, up to
-/// 16 MB an arena. glibc would hand the megabytes of a large batch back to the system after every
-/// call, and get them page by page for the next.
-void keepFreedMemory();
-
 }  // namespace box_query

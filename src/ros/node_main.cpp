@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
 /// The node as a process of its own.
+#include "ros/memory.h"
 #include "ros/node.h"
 
 #include <box_query/ros/parameters.h>

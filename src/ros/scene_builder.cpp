@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/scene_builder.h"
 
+#include "ros/memory.h"
 #include "ros/name_order.h"
 
 #include <chrono>
@@ -12,6 +13,8 @@ namespace {
 using Clock = SceneBuilder::Clock;
 
 constexpr std::chrono::milliseconds kGrace(10);
+/// [bytes] that a box takes in a snapshot, its scene and its draft, about.
+constexpr std::size_t kBoxMemory = 512;
 constexpr Clock::time_point kNever = Clock::time_point::max();
 
 }  // namespace
@@ -26,13 +29,13 @@ SceneBuilder::SceneBuilder(const Parameters& parameters, BoxTracker& tracker,
       behind_since_(kNever),
       kept_(parameters) {}
 
-void SceneBuilder::build() {
+bool SceneBuilder::build() {
   const std::lock_guard<std::mutex> building(build_mutex_);
   std::unique_lock<std::timed_mutex> lock(mutex_);
   const std::uint64_t changes = tracker_.changes();
   const std::uint64_t boxes = tracker_.boxesVersion();
   if (changes == shown_changes_) {
-    return;  // somebody else was faster
+    return false;  // somebody else was faster
   }
   const Clock::time_point drafted = Clock::now();
   Draft draft = tracker_.draft();
@@ -62,11 +65,14 @@ void SceneBuilder::build() {
   behind_since_ = tracker_.changes() == changes ? kNever : drafted;
   lock.unlock();
   built_.ring();
+  return !same;
 }
 
 void SceneBuilder::buildAhead() {
   if (askedLately()) {
-    build();
+    if (build()) {
+      makeMemoryReady(kBoxMemory * latest()->names.size());
+    }
     ahead_ = true;
   } else {
     ahead_ = false;

@@ -31,8 +31,8 @@ class SceneBuilder {
   SceneBuilder(const Parameters& parameters, BoxTracker& tracker, std::timed_mutex& mutex);
 
   /// Makes the latest snapshot one of all that the tracker knows, unless it is, or somebody else
-  /// does.
-  void build();
+  /// does. @return whether a scene was built
+  bool build();
   /// The same if somebody has got a snapshot within Parameters::build_ahead seconds. For the worker
   /// alone, whenever something may have come.
   void buildAhead();

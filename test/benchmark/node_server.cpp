@@ -2,6 +2,7 @@
 #include "benchmark/node_server.h"
 
 #include "ros/conversions.h"
+#include "ros/memory.h"
 #include "ros/node.h"
 
 #include <box_query/CastRay.h>
