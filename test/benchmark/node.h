@@ -64,7 +64,7 @@ struct BoxesRow {
   std::size_t late = 0;  ///< messages that were published after their time
   Times node;
   Times plain;
-  double decode = 0.0;    ///< by roscpp, without any node: median
+  double decode = 0.0;    ///< by roscpp, without any node, between messages: median
   double build = 0.0;     ///< of the scene, as well
   std::size_t asked = 0;  ///< answers of both
   std::size_t wrong = 0;  ///< that are not those of the scene that they name

@@ -114,27 +114,30 @@ class Listener {
   std::size_t wrong_ = 0;
 };
 
-/// Medians of what has to be done in any case: roscpp's decoding, and a new Scene.
-void timeDecodeAndBuild(const BoxSet& set, BoxesRow& row) {
-  constexpr int kTimes = 15;
-  RawMarkerArray raw = RawMarkerArray::of(set.message);
-  std::vector<double> decode;
-  std::vector<double> build;
-  for (int i = 0; i < kTimes; ++i) {
+/// What has to be done in any case, each time as long after the last as messages are.
+class DecodeAndBuild {
+ public:
+  void time(const BoxSet& set, const RawMarkerArray& message) {
+    RawMarkerArray raw = message;
     auto start = WallClock::now();
-    visualization_msgs::MarkerArray message;
+    visualization_msgs::MarkerArray decoded;
     ros::serialization::IStream stream(raw.bytes.data(),
                                        static_cast<std::uint32_t>(raw.bytes.size()));
-    ros::serialization::deserialize(stream, message);
-    decode.push_back(microseconds(WallClock::now() - start));
+    ros::serialization::deserialize(stream, decoded);
+    decode_.push_back(microseconds(WallClock::now() - start));
     std::vector<Box> boxes = set.boxes;
     start = WallClock::now();
     const Scene scene(std::move(boxes));
-    build.push_back(microseconds(WallClock::now() - start));
+    build_.push_back(microseconds(WallClock::now() - start));
   }
-  row.decode = quantile(decode, 0.5);
-  row.build = quantile(build, 0.5);
-}
+
+  double decode() const { return quantile(decode_, 0.5); }
+  double build() const { return quantile(build_, 0.5); }
+
+ private:
+  std::vector<double> decode_;
+  std::vector<double> build_;
+};
 
 BoxesRow::Times timesOf(const std::vector<double>& times) {
   return {quantile(times, 0.5), quantile(times, 1.0)};
@@ -145,7 +148,7 @@ BoxesRow measure(std::size_t boxes, double rate, double seconds, NodeClient& cli
   row.boxes = boxes;
   row.rate = rate;
   Sets sets = makeSets(boxes);
-  timeDecodeAndBuild(sets.sets[0], row);
+  DecodeAndBuild alone;
   Listener node(client.nh, client.node_boxes, kNode);
   Listener plain(client.nh, client.plain_boxes, kPlain);
   std::vector<double> node_times;
@@ -165,12 +168,15 @@ BoxesRow measure(std::size_t boxes, double rate, double seconds, NodeClient& cli
     for (const std::size_t turn : {i % 2, 1 - i % 2}) {
       times[turn] = (turn == 0 ? node : plain).publish(set, stamp, message, sets.request);
     }
+    alone.time(set, message);
     if (i >= kSets) {  // when all is warm
       node_times.push_back(times[0]);
       plain_times.push_back(times[1]);
     }
   }
   row.messages = node_times.size();
+  row.decode = alone.decode();
+  row.build = alone.build();
   row.node = timesOf(node_times);
   row.plain = timesOf(plain_times);
   row.asked = node.asked() + plain.asked();
