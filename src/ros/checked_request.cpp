@@ -14,13 +14,13 @@ namespace {
 }  // namespace
 
 void CheckedStream::expectEnd() const {
-  if (left_ != 0) {
-    refuse(std::to_string(left_) + " bytes are left over at its end");
+  if (left() != 0) {
+    refuse(std::to_string(left()) + " bytes are left over at its end");
   }
 }
 
 void CheckedStream::throwCutShort(std::uint32_t size) const {
-  refuse("it ends " + std::to_string(left_) + " bytes into a field of " + std::to_string(size));
+  refuse("it ends " + std::to_string(left()) + " bytes into a field of " + std::to_string(size));
 }
 
 void CheckedStream::throwTooLong(std::uint32_t length) const {
@@ -30,7 +30,7 @@ void CheckedStream::throwTooLong(std::uint32_t length) const {
                              std::to_string(max_array_length_) +
                              " are taken; split it, or raise ~max_queries_per_call");
   }
-  refuse(array + " is claimed where " + std::to_string(left_) + " bytes are left");
+  refuse(array + " is claimed where " + std::to_string(left()) + " bytes are left");
 }
 
 }  // namespace box_query

@@ -38,15 +38,14 @@ struct CheckedRequest {
 class CheckedStream {
  public:
   CheckedStream(std::uint8_t* data, std::uint32_t size, std::uint32_t max_array_length)
-      : data_(data), left_(size), max_array_length_(max_array_length) {}
+      : data_(data), end_(data + size), max_array_length_(max_array_length) {}
 
   std::uint8_t* advance(std::uint32_t size) {
-    if (size > left_) {
+    if (size > left()) {
       throwCutShort(size);
     }
     std::uint8_t* const begin = data_;
     data_ += size;
-    left_ -= size;
     return begin;
   }
 
@@ -62,7 +61,7 @@ class CheckedStream {
     ahead.next(length);
     // A default-constructed element is the shortest one.
     const std::uint64_t element_size = ros::serialization::serializationLength(T());
-    if (length > max_array_length_ || length * element_size > ahead.left_) {
+    if (length > max_array_length_ || length * element_size > ahead.left()) {
       ahead.throwTooLong(length);
     }
     ros::serialization::deserialize(*this, values);
@@ -72,11 +71,12 @@ class CheckedStream {
   void expectEnd() const;
 
  private:
+  std::size_t left() const { return static_cast<std::size_t>(end_ - data_); }
   [[noreturn]] void throwCutShort(std::uint32_t size) const;
   [[noreturn]] void throwTooLong(std::uint32_t length) const;
 
   std::uint8_t* data_;
-  std::uint32_t left_;
+  std::uint8_t* end_;  ///< not how much is left: one number less to keep for each that is read
   std::uint32_t max_array_length_;
 };
 
