@@ -18,55 +18,58 @@ constexpr std::size_t kInBlocks = 16;
 constexpr std::size_t kCrowdedInBlocks = 48;
 static_assert(kCrowdedInBlocks <= 64, "a bit each");
 
-/// The median of a sample, so that a few boxes far away do not cost the others the precision of
-/// float.
-void findCenter(const std::vector<Extent>& extents, double* center) {
+/// The median of a sample of the boxes that kernels may take, so that a few boxes far away do not
+/// cost the others the precision of float.
+void findCenter(const SceneBoxes& boxes, double* center) {
   constexpr std::size_t kSample = 33;
-  const std::size_t count = std::min(kSample, extents.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    std::array<double, kSample> sample;
-    for (std::size_t k = 0; k < count; ++k) {
-      sample[k] = extents[k * extents.size() / count].middle[axis];
+  const std::size_t count = std::min(kSample, boxes.size());
+  std::array<std::array<double, kSample>, 3> sample;
+  std::size_t size = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t end = (k + 1) * boxes.size() / count;
+    for (std::size_t i = k * boxes.size() / count; i < end; ++i) {
+      const PreparedBox box = boxes.prepared(i);
+      if (box.kind != PreparedBox::Kind::kExactOnly) {
+        const Extent extent = extentOf(box);
+        for (int axis = 0; axis < 3; ++axis) {
+          sample[axis][size] = extent.middle[axis];
+        }
+        ++size;
+        break;
+      }
     }
-    std::nth_element(sample.begin(), sample.begin() + count / 2, sample.begin() + count);
-    center[axis] = count > 0 ? sample[count / 2] : 0.0;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto begin = sample[axis].begin();
+    std::nth_element(begin, begin + size / 2, begin + size);
+    center[axis] = size > 0 ? sample[axis][size / 2] : 0.0;
   }
 }
 
 }  // namespace
 
-BoxTree::BoxTree(const std::vector<PreparedBox>& boxes) {
-  std::vector<Extent> extents;
-  std::vector<std::uint32_t> numbers;
-  extents.reserve(boxes.size());
-  numbers.reserve(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    if (boxes[i].kind == PreparedBox::Kind::kExactOnly) {
-      left_out_.push_back(static_cast<std::uint32_t>(i));
-    } else {
-      extents.push_back(extentOf(boxes[i]));
-      numbers.push_back(static_cast<std::uint32_t>(i));
-    }
-  }
-  findCenter(extents, center_);
+// A box is prepared twice, which takes less time than to keep it.
+BoxTree::BoxTree(const SceneBoxes& boxes) {
+  findCenter(boxes, center_);
   std::vector<Item> items;
-  items.reserve(extents.size());
-  for (std::size_t k = 0; k < extents.size(); ++k) {
+  items.reserve(boxes.size());
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+    const PreparedBox box = boxes.prepared(i);
     Item item;
-    item.box = numbers[k];
-    if (findBounds(extents[k], center_, item.bounds)) {
+    item.box = i;
+    if (box.kind != PreparedBox::Kind::kExactOnly &&
+        findBounds(extentOf(box), center_, item.bounds)) {
       items.push_back(item);
     } else {
-      left_out_.push_back(item.box);
+      left_out_.push_back(i);
     }
   }
-  std::sort(left_out_.begin(), left_out_.end());
   if (items.empty()) {
     return;
   }
   TreeBuilder builder(levels_, std::move(items));
   builder.build();
-  addRecords(builder.items(), [&](std::size_t i) -> const PreparedBox& { return boxes[i]; });
+  addRecords(boxes, builder.items());
   for (const TreeNodes& level : levels_) {
     built_nodes_.push_back(level.size());
   }
@@ -81,6 +84,16 @@ BoxTree::BoxTree(const std::vector<PreparedBox>& boxes) {
     for (std::size_t node = 0; node < levels_.front().size(); ++node) {
       setSlot(around_nodes_, node, aroundSlots(levels_.front().bounds[node]));
     }
+  }
+}
+
+void BoxTree::addRecords(const SceneBoxes& boxes, const std::vector<Item>& items) {
+  records_.reserve(records_.size() + items.size());
+  box_of_record_.reserve(records_.size() + items.size());
+  for (const Item& item : items) {
+    records_.push_back(recordOf(boxes.prepared(item.box)));
+    has_aligned_ = has_aligned_ || records_.back().isAligned();
+    box_of_record_.push_back(item.box);
   }
 }
 

@@ -5,7 +5,6 @@
 
 #include "kernels/scene_view.h"
 #include "scene/box_bounds.h"
-#include "scene/prepared_boxes.h"
 #include "scene/scene_boxes.h"
 #include "scene/tree_nodes.h"
 
@@ -37,7 +36,7 @@ struct BoxChanges {
 class BoxTree {
  public:
   BoxTree() = default;
-  explicit BoxTree(const std::vector<PreparedBox>& boxes);
+  explicit BoxTree(const SceneBoxes& boxes);
 
   /// The tree of boxes that come after those of this tree: the same nodes with other bounds, and
   /// one more root for those that are added. Nothing where a new tree is the better one, since
@@ -52,16 +51,7 @@ class BoxTree {
   const std::vector<std::uint32_t>& left_out() const { return left_out_; }
 
  private:
-  template <typename PreparedOf>
-  void addRecords(const std::vector<Item>& items, PreparedOf&& preparedOf) {
-    records_.reserve(records_.size() + items.size());
-    box_of_record_.reserve(records_.size() + items.size());
-    for (const Item& item : items) {
-      records_.push_back(recordOf(preparedOf(item.box)));
-      has_aligned_ = has_aligned_ || records_.back().isAligned();
-      box_of_record_.push_back(item.box);
-    }
-  }
+  void addRecords(const SceneBoxes& boxes, const std::vector<Item>& items);
   void measure();
   void dropAppended();
   bool moveBoxes(const SceneBoxes& boxes, const BoxChanges& changes);

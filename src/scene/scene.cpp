@@ -20,15 +20,6 @@ void BoxMask::set(std::size_t box, bool look) noexcept {
 
 namespace {
 
-BoxTree newTree(const SceneBoxes& boxes) {
-  std::vector<PreparedBox> prepared;
-  prepared.reserve(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    prepared.push_back(boxes.prepared(i));
-  }
-  return BoxTree(prepared);
-}
-
 void checkBoxes(const std::vector<Box>& boxes) {
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (!isValid(boxes[i])) {
@@ -68,7 +59,7 @@ BoxChanges changesOf(const SceneBoxes& before, const SceneBoxes& boxes,
 
 }  // namespace
 
-Scene::Impl::Impl(std::vector<Box> all) : boxes(std::move(all)), tree(newTree(boxes)) {
+Scene::Impl::Impl(std::vector<Box> all) : boxes(std::move(all)), tree(boxes) {
   update.added = boxes.size();
   view = tree.view();
 }
@@ -79,7 +70,7 @@ Scene::Impl::Impl(const Impl& before, std::vector<Box> all,
   const BoxChanges changes = changesOf(before.boxes, boxes, previous);
   std::optional<BoxTree> updated = before.tree.updated(boxes, changes);
   update = {!updated.has_value(), changes.moved, changes.added.size(), changes.removed};
-  tree = updated ? std::move(*updated) : newTree(boxes);
+  tree = updated ? std::move(*updated) : BoxTree(boxes);
   view = tree.view();
 }
 

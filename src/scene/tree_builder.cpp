@@ -89,6 +89,7 @@ void TreeBuilder::emit(std::size_t level, const std::vector<ItemRange>& slots, s
 
 void TreeBuilder::emitLeaves(const std::vector<ItemRange>& ranges, std::size_t records) {
   TreeNodes& nodes = levels_[0];
+  nodes.reserve(nodes.size() + ranges.size());
   for (const ItemRange& range : ranges) {
     nodes.first.push_back(static_cast<std::uint32_t>(records + range.begin));
     nodes.bounds.push_back(emptyBounds());

@@ -21,6 +21,10 @@ struct TreeNodes {
   std::vector<std::uint32_t> first;
 
   std::size_t size() const { return first.size(); }
+  void reserve(std::size_t nodes) {
+    bounds.reserve(nodes);
+    first.reserve(nodes);
+  }
   void resize(std::size_t nodes) {
     bounds.resize(nodes);
     first.resize(nodes);

@@ -62,7 +62,7 @@ std::optional<BoxTree> BoxTree::updated(const SceneBoxes& boxes, const BoxChange
     if (!builder.append(tree.records_.size())) {
       return std::nullopt;
     }
-    tree.addRecords(builder.items(), [&](std::size_t i) { return boxes.prepared(i); });
+    tree.addRecords(boxes, builder.items());
   }
   tree.measure();
   if (!(tree.cost_ <= kWorse * built_cost_)) {

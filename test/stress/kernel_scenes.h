@@ -4,7 +4,6 @@
 #pragma once
 
 #include "kernels/kernels.h"
-#include "scene/prepared_boxes.h"
 #include "stress/random.h"
 
 #include <box_query/geometry.h>
@@ -17,14 +16,6 @@
 #include <gtest/gtest.h>
 
 namespace box_query::stress {
-
-inline std::vector<PreparedBox> prepareAll(const std::vector<Box>& boxes) {
-  std::vector<PreparedBox> prepared;
-  for (const Box& any : boxes) {
-    prepared.push_back(std::visit([](const auto& box) { return PreparedBox(box); }, any));
-  }
-  return prepared;
-}
 
 inline std::vector<const kernels::Kernels*> allKernels() {
   std::vector<const kernels::Kernels*> all;

@@ -28,7 +28,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 class Asked {
  public:
   Asked(const std::vector<Box>& boxes, const kernels::Kernels& kernels)
-      : tree_(prepareAll(boxes)), view_(tree_.view()), kernels_(kernels) {
+      : tree_(SceneBoxes(boxes)), view_(tree_.view()), kernels_(kernels) {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       in_tree_.push_back(!std::binary_search(tree_.left_out().begin(), tree_.left_out().end(), i));
     }

@@ -37,7 +37,7 @@ struct Counts {
 
 void checkNearest(const kernels::Kernels& kernels, const std::vector<Box>& boxes,
                   const Segment& segment, Counts& counts) {
-  const BoxTree tree(prepareAll(boxes));
+  const BoxTree tree{SceneBoxes(boxes)};
   const kernels::SceneView view = tree.view();
   if (!isForKernels(segment, view)) {
     return;
@@ -158,7 +158,7 @@ TEST_P(NearestKernelTest, OfferTheNearestOfManySegments) {
     Random random(22, count, 0);
     const std::vector<Box> boxes = scattered(random, count, 6.0);
     const double side = 6.0 * std::cbrt(static_cast<double>(count));
-    const BoxTree tree(prepareAll(boxes));
+    const BoxTree tree{SceneBoxes(boxes)};
     const kernels::SceneView view = tree.view();
     BoxMask mask(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) {

@@ -65,7 +65,7 @@ class KernelTogetherTest : public testing::TestWithParam<const kernels::Kernels*
   /// How many rays meet anything.
   int check(const std::vector<Box>& boxes, const std::vector<Ray>& rays,
             const std::vector<double>& ranges) const {
-    const BoxTree tree(prepareAll(boxes));
+    const BoxTree tree{SceneBoxes(boxes)};
     const kernels::SceneView view = tree.view();
     const std::vector<Delivered> closest = ask(GetParam()->closest_together, view, rays, ranges);
     const std::vector<Delivered> any = ask(GetParam()->any_together, view, rays, ranges);
@@ -151,7 +151,7 @@ TEST_P(KernelTogetherTest, LeavesOpenWhatItCannotTake) {
     rays[7] = {at - x, 0x1p-300 * x};          // hardly goes
     rays[11] = {at - x, 0x1p300 * x};          // goes too far
     rays[13] = {at - 0x1p42 * x, 0x1p30 * x};  // beyond what rays in lanes may have
-    const BoxTree tree(prepareAll(boxes));
+    const BoxTree tree{SceneBoxes(boxes)};
     const std::vector<Delivered> closest =
         ask(GetParam()->closest_together, tree.view(), rays, std::vector<double>(16, kInf));
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -172,7 +172,7 @@ TEST_P(KernelTogetherTest, SegmentsEndWhereTheyDo) {
       part.direction *= random.uniform(0.0, side) / part.direction.norm();
       parts.push_back(part);
     }
-    const BoxTree tree(prepareAll(boxes));
+    const BoxTree tree{SceneBoxes(boxes)};
     const std::vector<Delivered> any = ask(GetParam()->any_of_segments_together, tree.view(), parts,
                                            std::vector<double>(parts.size(), kInf));
     int met = 0;
