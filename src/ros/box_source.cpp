@@ -168,14 +168,6 @@ DecodedMessage decodeMessage(const BoxSource& source, const std::uint8_t* data, 
   return message;
 }
 
-std::string_view stripSlash(std::string_view frame) {
-  return !frame.empty() && frame.front() == '/' ? frame.substr(1) : frame;
-}
-
-bool isBadFrame(std::string_view frame) {
-  return frame.empty() || frame.front() == '/';
-}
-
 std::string tooManyBoxes(std::size_t max_boxes) {
   return "it carries more than " + std::to_string(max_boxes) +
          " boxes; publish fewer or raise max_boxes_per_message";

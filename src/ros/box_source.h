@@ -4,6 +4,7 @@
 #pragma once
 
 #include "ros/box_list.h"
+#include "ros/frame_name.h"
 #include "ros/limits.h"
 #include "ros/wire_reader.h"
 
@@ -63,8 +64,9 @@ struct BoxChange {
   };
 
   // Not an aggregate: value-initialisation would fill the whole of it with zeros first.
-  explicit BoxChange(double largest = std::numeric_limits<double>::max())
-      : max_coordinate(largest) {}
+  explicit BoxChange(double largest = std::numeric_limits<double>::max(),
+                     std::string_view its_ns = {}, std::string_view its_frame = {})
+      : max_coordinate(largest), ns(its_ns), frame(its_frame) {}
 
   double max_coordinate;  ///< [m] of its boxes: Limits::coordinate
   Kind kind = Kind::kSet;
@@ -73,7 +75,7 @@ struct BoxChange {
   std::string ns;
   std::int64_t id = 0;
   std::string label;
-  std::string frame;          ///< of the boxes, without a leading slash
+  FrameName frame;            ///< of the boxes, without a leading slash
   ros::Time stamp;            ///< 0: none
   std::int64_t lifetime = 0;  ///< [ns] of ROS time from receipt; 0: forever
   BoxList boxes;
@@ -145,12 +147,6 @@ const BoxSource* findSource(std::string_view type, std::string_view md5, std::st
 /// Decodes a whole message; never throws at bad bytes.
 DecodedMessage decodeMessage(const BoxSource& source, const std::uint8_t* data, std::size_t size,
                              const Limits& limits);
-
-/// A frame as tf2 wants it: publishers of the days of tf1 lead with a slash, which tf2 refuses.
-/// The result is a view into `frame`.
-std::string_view stripSlash(std::string_view frame);
-/// Whether a frame without its leading slash is empty, or one that tf2 would still refuse.
-bool isBadFrame(std::string_view frame);
 
 /// The problem of a message with too many boxes.
 std::string tooManyBoxes(std::size_t max_boxes);

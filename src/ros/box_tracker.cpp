@@ -44,7 +44,7 @@ void checkMove(BoxChange& move, std::size_t changes, std::size_t shapes) {
 }
 
 WaitingList::Place placeOf(const BoxChange& change) {
-  return {change.frame, change.frame_locked ? ros::Time() : change.stamp};
+  return {change.frame.str(), change.frame_locked ? ros::Time() : change.stamp};
 }
 
 }  // namespace
@@ -231,7 +231,7 @@ void BoxTracker::place(Word&& word) {
 void BoxTracker::placeAt(const FramePose& pose, Word&& word) {
   noteStamp(word.change.stamp, word.received);
   if (word.change.frame_locked) {
-    const std::string frame = word.change.frame;
+    const std::string frame = word.change.frame.str();
     locked_[frame] = pose;
     store_.place(std::move(word), frame);
     return;

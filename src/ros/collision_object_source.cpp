@@ -197,7 +197,8 @@ void add(Fields&& fields, BoxChange& change) {
   if (fields.primitives + fields.others == 0) {
     change.reject(Rejection::kShape, 1, "it has no geometry", change.id);
   } else if (isBadFrame(change.frame)) {
-    change.reject(Rejection::kFrame, change.boxes.size(), "'" + change.frame + "'", change.id);
+    change.reject(Rejection::kFrame, change.boxes.size(), "'" + change.frame.str() + "'",
+                  change.id);
     change.boxes.clear();
   } else if (!change.boxes.empty() || change.rejected() == 0) {
     keep(std::move(fields), change);
@@ -220,7 +221,7 @@ void move(Fields&& fields, BoxChange& change) {
   }
   if (isBadFrame(move.frame)) {
     move.boxes.clear();
-    move.reject(Rejection::kFrame, 1, "'" + move.frame + "'", 0);
+    move.reject(Rejection::kFrame, 1, "'" + move.frame.str() + "'", 0);
   }
   change = std::move(move);
 }
@@ -264,15 +265,14 @@ void decodeCollisionObject(WireReader& reader, const Limits& limits, DecodedMess
 }
 
 void readCollisionObject(WireReader& reader, const Limits& limits, DecodedMessage& message) {
-  BoxChange& change = message.changes.emplace_back(limits.coordinate);
-  change.whole_namespace = true;
   const WireHeader header = reader.header();
-  change.stamp = header.stamp;
-  change.frame = std::string(stripSlash(header.frame));
   Fields fields;
   WireBlock pose = reader.block<kPoseSize>();
   fields.pose = readPose(pose);
-  change.ns = reader.name("id");
+  const std::string_view id = reader.name("id");
+  BoxChange& change = message.changes.emplace_back(limits.coordinate, id, stripSlash(header.frame));
+  change.whole_namespace = true;
+  change.stamp = header.stamp;
   change.label = reader.name("type.key");
   reader.string();  // type.db
   readPrimitives(reader, limits, fields, change, message);

@@ -24,11 +24,10 @@ constexpr std::int64_t kShortestLifetime = 100000;
 /// Appends one marker. `boxes` counts those of the message so far.
 void readMarker(WireReader& reader, const Limits& limits, std::size_t& boxes,
                 DecodedMessage& message) {
-  BoxChange& change = message.changes.emplace_back(limits.coordinate);
   const WireHeader header = reader.header();
+  const std::string_view ns = reader.name("namespace");
+  BoxChange& change = message.changes.emplace_back(limits.coordinate, ns, stripSlash(header.frame));
   change.stamp = header.stamp;
-  change.frame = std::string(stripSlash(header.frame));
-  change.ns = std::string(reader.name("namespace"));
   WireBlock block = reader.block<kBlockSize>();
   change.id = block.number<std::int32_t>();
   const auto type = block.number<std::int32_t>();
@@ -60,7 +59,7 @@ void readMarker(WireReader& reader, const Limits& limits, std::size_t& boxes,
     change.add(change.id, shape.center, shape.orientation, shape.size);
   }
   reader.skip(std::uint64_t{reader.count(kColorSize)} * kColorSize);
-  change.label = std::string(adds ? reader.name("text") : reader.string());
+  change.label = adds ? reader.name("text") : reader.string();
   reader.string();  // mesh_resource
   reader.skip(1);   // mesh_use_embedded_materials
 

@@ -68,13 +68,9 @@ BoxChange& WholeSet::changeOf(const WireHeader& header, std::string_view class_n
   if (changes.size() == 1) {
     changes.reserve(kRecentChanges);  // where there are two there are often more
   }
-  BoxChange& change = changes.emplace_back(max_coordinate_);
+  BoxChange& change = changes.emplace_back(max_coordinate_, class_name, frame);
   change.id = id;
-  if (!class_name.empty()) {
-    change.ns = class_name;
-    change.label = class_name;
-  }
-  change.frame = std::string(frame);
+  change.label = class_name;
   change.stamp = header.stamp;
   if (changes.size() == 1) {
     change.boxes.each().reserve(boxes_);

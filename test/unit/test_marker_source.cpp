@@ -178,14 +178,6 @@ TEST(MarkerSource, TakesAZeroQuaternionAsIdentity) {
   EXPECT_EQ(message.changes[0].boxes[0].box.orientation.coeffs(), Quaternion::Identity().coeffs());
 }
 
-TEST(MarkerSource, StripsOneLeadingSlash) {
-  EXPECT_EQ(stripSlash("/map"), "map");
-  EXPECT_EQ(stripSlash("map"), "map");
-  EXPECT_EQ(stripSlash("/robot/base"), "robot/base");
-  EXPECT_EQ(stripSlash("/"), "");
-  EXPECT_EQ(stripSlash(""), "");
-}
-
 TEST(MarkerSource, TakesLifetimesAsRvizDoes) {
   const auto lifetime = [](std::int32_t sec, std::int32_t nsec) {
     Marker marker = cube();
