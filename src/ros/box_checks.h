@@ -5,9 +5,9 @@
 
 #include "ros/box_source.h"
 #include "ros/magnitudes.h"
+#include "ros/number_pairs.h"
 
-#include <algorithm>
-#include <cmath>
+#include <cstdint>
 
 namespace box_query {
 
@@ -15,30 +15,37 @@ namespace box_query {
 /// for each, since most messages have none that is bad.
 class BoxChecks {
  public:
-  /// The bytes of three numbers each, best where they have been for a while: those that were just
-  /// written would be waited for. `size`: full sides [m], the same as those bytes.
-  void see(const void* center_bytes, const Quaternion& orientation, const void* size_bytes,
-           const Vector3& size) {
-    lengths_.seeThree(center_bytes);
-    lengths_.seeThree(size_bytes);
-    least_ = std::min({least_, size.x(), size.y(), size.z()});
-    const double norm = orientation.squaredNorm();
-    shortest_ = std::min(shortest_, norm);
-    longest_ = std::max(longest_, norm);
-    sum_ += norm;
+  /// The bytes of a center, a quaternion and full sides [m], best where they have been for a while:
+  /// those that were just written would be waited for.
+  void see(const void* center, const void* orientation, const void* size) {
+    const auto* const sides = static_cast<const std::uint8_t*>(size);
+    const auto* const quaternion = static_cast<const std::uint8_t*>(orientation);
+    lengths_.seeThree(center);
+    lengths_.seeThree(size);
+    signs_ |= bitsOf(sides) | bitsOf(sides + sizeof(double));
+    const NumberPair xy = loadPair(quaternion);
+    const NumberPair zw = loadPair(quaternion + 2 * sizeof(double));
+    const NumberPair sums = xy * xy + zw * zw;
+    const NumberPair norm = sums + NumberPair{sums[1], sums[0]};
+    norm_errors_.seeTwo(norm - 1.0);
   }
   /// False also where it would take a look at each.
   bool areSurelyGood(double max_coordinate) const {
     return lengths_.largest() <= max_coordinate && lengths_.smallest() >= kSmallestCoordinate &&
-           least_ >= 0.0 && isNearUnit(shortest_) && isNearUnit(longest_) && std::isfinite(sum_);
+           ((signs_[0] | signs_[1]) >> 63U) == 0 && norm_errors_.largest() <= kSureNormError;
   }
 
  private:
+  /// Of a squared norm: within this, whatever the order of the sum, isNearUnit() is true.
+  static constexpr double kSureNormError = 1.99 * kNormTolerance;
+
+  static BitsPair bitsOf(const void* numbers) {
+    return reinterpret_cast<BitsPair>(loadPair(numbers));
+  }
+
   Magnitudes lengths_;
-  double least_ = 0.0;
-  double shortest_ = 1.0;
-  double longest_ = 1.0;
-  double sum_ = 0.0;  // of the norms: min and max pass over NaN
+  BitsPair signs_{};  ///< of sides: that of -0 would take a look
+  Magnitudes norm_errors_;
 };
 
 }  // namespace box_query

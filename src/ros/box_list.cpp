@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/box_list.h"
 
-#include "ros/magnitudes.h"
-
 #include <cstring>
 #include <utility>
 
@@ -26,51 +24,54 @@ bool sameBits(const Things& a, const Things& b) {
 constexpr double kPlainCoordinate = 1e-100;
 constexpr double kPlainQuaternion = 1e-30;
 
-}  // namespace
-
-PointList::PointList(std::int64_t first_id, const OrientedBox& shape, std::vector<Vector3>&& points)
-    : first_id_(first_id),
-      shape_(shape),
-      turned_(shape.orientation.vec() != Vector3::Zero()),
-      rotation_(shape.orientation.normalized().toRotationMatrix()),
-      points_(std::move(points)) {}
-
-bool PointList::isSurelyWithin(double max_coordinate) const {
-  Magnitudes quaternion;  // not of the matrix, which was just written: it would be waited for
-  quaternion.see(shape_.orientation.coeffs().data(), 4);
-  Magnitudes center;
-  center.seeThree(shape_.center.data());
-  Magnitudes points;
-  if (!points_.empty()) {
-    points.see(points_.front().data(), 3 * points_.size());
-  }
-  // A rotation lengthens no coordinate to twice the longest.
-  return center.largest() + (turned_ ? 2.0 : 1.0) * points.largest() <= max_coordinate &&
-         center.smallest() >= kPlainCoordinate && points.smallest() >= kPlainCoordinate &&
-         quaternion.smallest() >= kPlainQuaternion;
+bool isTurned(const Quaternion& orientation) {
+  return orientation.vec() != Vector3::Zero();
 }
 
-bool PointList::isSame(const PointList& other) const {
-  return first_id_ == other.first_id_ &&
-         std::memcmp(static_cast<const void*>(&shape_), static_cast<const void*>(&other.shape_),
-                     sizeof(shape_)) == 0 &&
-         sameBits(points_, other.points_);
+}  // namespace
+
+BoxList::Reader::Reader(const BoxList& list) : list_(&list) {
+  if (list.arePoints() && isTurned(list.each_.front().box.orientation)) {
+    turned_ = true;
+    rotation_ = list.each_.front().box.orientation.normalized().toRotationMatrix();
+  }
+}
+
+void BoxList::setPoints(std::int64_t first_id, const OrientedBox& shape, const WireArray& points) {
+  each_.clear();
+  points_.clear();
+  if (points.count > 0) {
+    each_.emplace_back(first_id, shape.center, shape.orientation, shape.half_extents);
+    points_.resize(points.count);
+    std::memcpy(static_cast<void*>(points_.data()), points.elements.bytes(),
+                points.count * sizeof(Vector3));
+  }
 }
 
 bool BoxList::isSame(const BoxList& other) const {
-  if (points_ && other.points_) {
-    return points_ == other.points_ || points_->isSame(*other.points_);
-  }
-  return !points_ && !other.points_ && sameBits(each_, other.each_);
+  return sameBits(points_, other.points_) && sameBits(each_, other.each_);
 }
 
 void BoxList::spreadPoints() {
-  const std::shared_ptr<const PointList> points = std::move(points_);
-  points_ = nullptr;
-  each_.reserve(points->size());
-  for (std::size_t n = 0; n < points->size(); ++n) {
-    each_.push_back((*points)[n]);
+  const BoxList list = std::move(*this);
+  clear();
+  each_.reserve(list.size());
+  for (const IdentifiedBox& box : list) {
+    each_.push_back(box);
   }
+}
+
+bool areSurelyWithin(double max_coordinate, const Vector3& center, const Quaternion& orientation,
+                     const Magnitudes& points) {
+  Magnitudes of_orientation;
+  of_orientation.see(orientation.coeffs().data(), 4);
+  Magnitudes of_center;
+  of_center.seeThree(center.data());
+  // A rotation lengthens no coordinate to twice the longest.
+  const double reach = (isTurned(orientation) ? 2.0 : 1.0) * points.largest();
+  return of_center.largest() + reach <= max_coordinate &&
+         of_center.smallest() >= kPlainCoordinate && points.smallest() >= kPlainCoordinate &&
+         of_orientation.smallest() >= kPlainQuaternion;
 }
 
 }  // namespace box_query

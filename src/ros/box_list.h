@@ -3,11 +3,13 @@
 /// Boxes with their ids, in the form in which a message brings them.
 #pragma once
 
+#include "ros/magnitudes.h"
+#include "ros/wire_reader.h"
+
 #include <box_query/geometry.h>
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include <boost/container/small_vector.hpp>
@@ -24,44 +26,38 @@ struct IdentifiedBox {
   OrientedBox box;
 };
 
-/// Boxes that differ only in their places: a third of the memory. Immutable.
-class PointList {
- public:
-  /// Box n is the shape with its center at point n of its frame, and has the id first_id + n *
-  /// 2^32. Where the shape is not turned and stands at 0, points are taken as they are, to the last
-  /// bit.
-  PointList(std::int64_t first_id, const OrientedBox& shape, std::vector<Vector3>&& points);
-
-  std::size_t size() const { return points_.size(); }
-  std::int64_t id(std::size_t n) const { return first_id_ + (static_cast<std::int64_t>(n) << 32); }
-  IdentifiedBox operator[](std::size_t n) const {
-    const Vector3 offset = turned_ ? Vector3(rotation_ * points_[n]) : points_[n];
-    return {id(n), shape_.center + offset, shape_.orientation, shape_.half_extents};
-  }
-  /// Whether the centers of all boxes are isWithin() the limit; false where it would take a look at
-  /// each.
-  bool isSurelyWithin(double max_coordinate) const;
-  /// Bit for bit.
-  bool isSame(const PointList& other) const;
-
- private:
-  std::int64_t first_id_;
-  OrientedBox shape_;
-  bool turned_;
-  Eigen::Matrix3d rotation_;
-  std::vector<Vector3> points_;
-};
-
-/// The boxes of one change: each in full, or as a list of points says.
+/// The boxes of one change: each in full, or a shape and its places, a third of the memory.
 class BoxList {
  public:
   /// Most markers are one box.
   using Each = boost::container::small_vector<IdentifiedBox, 1>;
 
+  /// Reads boxes in any order. What turns the points of a list is made once for all of them, when
+  /// somebody wants them: many lists are overtaken before.
+  class Reader {
+   public:
+    explicit Reader(const BoxList& list);
+    IdentifiedBox operator[](std::size_t n) const {
+      return list_->points_.empty() ? list_->each_[n] : ofPoint(n);
+    }
+
+   private:
+    IdentifiedBox ofPoint(std::size_t n) const {
+      const OrientedBox& shape = list_->each_.front().box;
+      const Vector3& point = list_->points_[n];
+      const Vector3 offset = turned_ ? Vector3(rotation_ * point) : point;
+      return {list_->id(n), shape.center + offset, shape.orientation, shape.half_extents};
+    }
+
+    const BoxList* list_;
+    bool turned_ = false;
+    Eigen::Matrix3d rotation_;  ///< if turned
+  };
+
   class Iterator {
    public:
-    Iterator(const BoxList& list, std::size_t n) : list_(&list), n_(n) {}
-    IdentifiedBox operator*() const { return (*list_)[n_]; }
+    Iterator(const BoxList& list, std::size_t n) : reader_(list), n_(n) {}
+    IdentifiedBox operator*() const { return reader_[n_]; }
     Iterator& operator++() {
       ++n_;
       return *this;
@@ -69,17 +65,17 @@ class BoxList {
     bool operator!=(const Iterator& other) const { return n_ != other.n_; }
 
    private:
-    const BoxList* list_;
+    Reader reader_;
     std::size_t n_;
   };
 
-  BoxList() = default;
-  explicit BoxList(std::shared_ptr<const PointList> points) : points_(std::move(points)) {}
-
-  std::size_t size() const { return points_ ? points_->size() : each_.size(); }
+  std::size_t size() const { return points_.empty() ? each_.size() : points_.size(); }
   bool empty() const { return size() == 0; }
-  std::int64_t id(std::size_t n) const { return points_ ? points_->id(n) : each_[n].id; }
-  IdentifiedBox operator[](std::size_t n) const { return points_ ? (*points_)[n] : each_[n]; }
+  std::int64_t id(std::size_t n) const {
+    return points_.empty() ? each_[n].id : each_.front().id + (static_cast<std::int64_t>(n) << 32);
+  }
+  /// Of many boxes a Reader makes less.
+  IdentifiedBox operator[](std::size_t n) const { return Reader(*this)[n]; }
   IdentifiedBox front() const { return (*this)[0]; }
   IdentifiedBox back() const { return (*this)[size() - 1]; }
   Iterator begin() const { return {*this, 0}; }
@@ -88,19 +84,29 @@ class BoxList {
   void clear() { *this = BoxList(); }
   /// The boxes to be changed, each in full from now on.
   Each& each() {
-    if (points_) {
+    if (!points_.empty()) {
       spreadPoints();
     }
     return each_;
   }
+  /// Box n is the shape with its center at point n of its frame, and has the id first_id + n *
+  /// 2^32. Where the shape is not turned and stands at 0, points are taken as they are, to the last
+  /// bit.
+  void setPoints(std::int64_t first_id, const OrientedBox& shape, const WireArray& points);
+  bool arePoints() const { return !points_.empty(); }
   /// Bit for bit and in the same form: no reader of a snapshot could tell them apart.
   bool isSame(const BoxList& other) const;
 
  private:
   void spreadPoints();
 
-  Each each_;
-  std::shared_ptr<const PointList> points_;  ///< null: as `each_` says, else that is empty
+  Each each_;                    ///< of points: the shape, with the first id
+  std::vector<Vector3> points_;  ///< empty: as `each_` says
 };
+
+/// Whether a shape of that center and orientation is isWithin() the limit at each of some points of
+/// its frame; false where it would take a look at each.
+bool areSurelyWithin(double max_coordinate, const Vector3& center, const Quaternion& orientation,
+                     const Magnitudes& points);
 
 }  // namespace box_query

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ros/box_source.h"
 
-#include "ros/magnitudes.h"
+#include "ros/box_checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,47 +70,49 @@ void BoxChange::addHostile(std::int64_t box_id, const Vector3& center,
   }
 }
 
-void BoxChange::addAll(const WireBoxes& wire_boxes) {
-  // All are taken and looked at together: most messages have none that is bad. BoxChecks would do
-  // the same, but in 1.08 of the time.
+void BoxChange::addAll(const WireArray& wire_boxes) {
+  // All are taken and looked at together: most messages have none that is bad.
   BoxList::Each& each = boxes.each();
-  each.resize(wire_boxes.size(), boost::container::default_init);
-  Magnitudes lengths;
-  double least = 0.0;
-  double shortest = 1.0;
-  double longest = 1.0;
-  double sum = 0.0;  // of the norms: min and max pass over NaN
-  for (std::uint32_t n = 0; n < wire_boxes.size(); ++n) {
-    const WireBox box = wire_boxes[n];
-    lengths.seeThree(wire_boxes.centerOf(n));  // of the bytes: the copy would be waited for
-    lengths.seeThree(wire_boxes.sizeOf(n));
-    least = std::min({least, box.size.x(), box.size.y(), box.size.z()});
-    const double norm = box.orientation.squaredNorm();
-    shortest = std::min(shortest, norm);
-    longest = std::max(longest, norm);
-    sum += norm;
-    each[n] = IdentifiedBox(n, box.center, box.orientation, 0.5 * box.size);
+  each.resize(wire_boxes.count, boost::container::default_init);
+  BoxChecks checks;
+  const std::uint8_t* bytes = wire_boxes.elements.bytes();
+  std::int64_t n = 0;
+  for (IdentifiedBox& made : each) {
+    const std::uint8_t* const sides = bytes + WireBox::kSides;
+    checks.see(bytes, bytes + WireBox::kOrientation, sides);
+    made.id = n++;
+    copyNumbers(bytes, made.box.center);
+    copyNumbers(bytes + WireBox::kOrientation, made.box.orientation.coeffs());
+    double* const half = made.box.half_extents.data();
+    storePair(0.5 * loadPair(sides), half);
+    storePair(0.5 * loadPair(sides + sizeof(double)), half + 1);
+    bytes += WireBox::kSize;
   }
-  if (lengths.largest() <= max_coordinate && lengths.smallest() >= kSmallestCoordinate &&
-      least >= 0.0 && isNearUnit(shortest) && isNearUnit(longest) && std::isfinite(sum)) {
+  if (checks.areSurelyGood(max_coordinate)) {
     return;
   }
   each.clear();
-  for (std::uint32_t n = 0; n < wire_boxes.size(); ++n) {
-    const WireBox box = wire_boxes[n];
+  WireBlock block = wire_boxes.elements;
+  for (n = 0; n < wire_boxes.count; ++n) {
+    const WireBox box = block.box();
     add(n, box.center, box.orientation, box.size);
   }
 }
 
-void BoxChange::addPoints(const WireBox& shape, std::vector<Vector3>&& points) {
-  const OrientedBox box{shape.center, shape.orientation, 0.5 * shape.size};
-  auto list = std::make_shared<const PointList>(id, box, std::move(points));
-  if (isGood(shape.center, shape.orientation, shape.size) && list->isSurelyWithin(max_coordinate)) {
-    boxes = BoxList(std::move(list));
+void BoxChange::addPoints(const WireBox& shape, const WireArray& points) {
+  BoxChecks checks;
+  checks.see(shape.center.data(), shape.orientation.coeffs().data(), shape.size.data());
+  Magnitudes places;  // of the bytes: the copy would be waited for
+  places.see(points.elements.bytes(), std::size_t{3} * points.count);
+  const bool are_good = checks.areSurelyGood(max_coordinate) &&
+                        areSurelyWithin(max_coordinate, shape.center, shape.orientation, places);
+  boxes.setPoints(id, {shape.center, shape.orientation, 0.5 * shape.size}, points);
+  if (are_good) {
     return;
   }
-  for (std::size_t n = 0; n < list->size(); ++n) {
-    const IdentifiedBox one = (*list)[n];
+  const BoxList each = std::move(boxes);
+  boxes.clear();
+  for (const IdentifiedBox& one : each) {
     add(one.id, one.box.center, one.box.orientation, shape.size);
   }
 }

@@ -90,10 +90,11 @@ struct BoxChange {
   /// rejects it. A half is exact.
   void add(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
            const Vector3& size);
-  /// The same for all of them, in less time; their ids are their places. Call it first.
-  void addAll(const WireBoxes& wire_boxes);
-  /// The same for a box at each of `points`, which are in the frame of `shape`: see PointList.
-  void addPoints(const WireBox& shape, std::vector<Vector3>&& points);
+  /// The same for an array of WireBox, in less time; their ids are their places. Call it first.
+  void addAll(const WireArray& wire_boxes);
+  /// The same for a box at each of an array of points, which are in the frame of `shape`: see
+  /// BoxList::setPoints(). Call it first.
+  void addPoints(const WireBox& shape, const WireArray& points);
 
  private:
   bool isGood(const Vector3& center, const Quaternion& orientation, const Vector3& size) const;

@@ -3,6 +3,7 @@
 #include "ros/box_tracker.h"
 
 #include <algorithm>
+#include <deque>
 
 namespace box_query {
 namespace {
@@ -55,19 +56,24 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
   struct Row {
     std::int64_t id;
     const Item* item;
-    std::size_t box;  ///< of the item
+    std::size_t box;                ///< of the item
+    const BoxList::Reader* points;  ///< of the item; null if its boxes are there in full
   };
   std::vector<Row> rows;  // of one namespace
+  std::deque<BoxList::Reader> points;
   rows.reserve(store_.placed(index));
   for (const auto& [ns, items] : store_.items(index)) {
     rows.clear();
+    points.clear();
     for (const auto& entry : items) {
       const Item& item = entry.second;
       if (item.rejected > 0 && bad.empty()) {
         bad = item.problem;
       }
+      const BoxList::Reader* const reader =
+          item.boxes.arePoints() ? &points.emplace_back(item.boxes) : nullptr;
       for (std::size_t n = 0; n < item.boxes.size(); ++n) {
-        rows.push_back({item.boxes.id(n), &item, n});
+        rows.push_back({item.boxes.id(n), &item, n, reader});
       }
     }
     const auto before = [](const Row& a, const Row& b) { return a.id < b.id; };
@@ -75,7 +81,7 @@ void BoxTracker::draftTopic(std::size_t index, Draft& draft) {
       std::stable_sort(rows.begin(), rows.end(), before);
     }
     for (const Row& row : rows) {
-      OrientedBox box = row.item->boxes[row.box].box;
+      OrientedBox box = (row.points ? (*row.points)[row.box] : row.item->boxes[row.box]).box;
       if (!row.item->locked_frame.empty()) {
         used_frames_.insert(row.item->locked_frame);
         const std::optional<FramePose>& known = locked_[row.item->locked_frame];

@@ -130,8 +130,8 @@ void addSolids(const Solids& solids, Fields& fields, BoxChange& change) {
   }
   BoxChecks checks;
   for (std::size_t i = 0; i < solids.size(); ++i) {
-    const Vector3& sides = solids[i].sides;
-    checks.see(&each[i].box.center, each[i].box.orientation, &sides, sides);
+    const OrientedBox& box = each[i].box;
+    checks.see(box.center.data(), box.orientation.coeffs().data(), solids[i].sides.data());
   }
   if (!are_boxes || !checks.areSurelyGood(change.max_coordinate)) {
     each.clear();

@@ -3,6 +3,8 @@
 /// A quick look at many numbers at once.
 #pragma once
 
+#include "ros/number_pairs.h"
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -21,19 +23,24 @@ class Magnitudes {
   /// The bytes of three numbers, wherever they are.
   void seeThree(const void* numbers) {
     const auto* const bytes = static_cast<const std::uint8_t*>(numbers);
-    seeTwo(bytes);
-    seeTwo(bytes + sizeof(double));
+    seeTwo(loadPair(bytes));
+    seeTwo(loadPair(bytes + sizeof(double)));
   }
+  void seeTwo(NumberPair numbers) { seeBits(reinterpret_cast<BitsPair>(numbers)); }
 
-  void see(const double* numbers, std::size_t count) {
+  /// The bytes of so many, wherever they are.
+  void see(const void* numbers, std::size_t count) {
+    const auto* const bytes = static_cast<const std::uint8_t*>(numbers);
     Magnitudes others;  // side by side: no instruction waits for the one before
     std::size_t n = 0;
     for (; n + 4 <= count; n += 4) {
-      seeTwo(numbers + n);
-      others.seeTwo(numbers + n + 2);
+      seeTwo(loadPair(bytes + n * sizeof(double)));
+      others.seeTwo(loadPair(bytes + (n + 2) * sizeof(double)));
     }
     for (; n < count; ++n) {
-      seeBits(Bits{} + bitsOf(numbers[n]));
+      double number = 0.0;
+      std::memcpy(&number, bytes + n * sizeof(double), sizeof(number));
+      seeTwo(NumberPair{number, number});
     }
     largest_ = others.largest_ > largest_ ? others.largest_ : largest_;
     least_ = others.least_ < least_ ? others.least_ : least_;
@@ -42,31 +49,26 @@ class Magnitudes {
   /// Not less than any magnitude, up to 1/16 more than the largest. NaN, which no limit is above,
   /// if one is infinite or NaN.
   double largest() const {
-    const std::int16_t first = std::max(largest_[3], largest_[7]);
-    return fromFirst(std::min(first, kInfinity) + 1);
+    const Words words = largest_;  // by value: min() and max() would keep a member in memory
+    const std::int16_t first = words[3] > words[7] ? words[3] : words[7];
+    return fromFirst((first < kInfinity ? first : kInfinity) + 1);
   }
   /// Not more than any magnitude but 0, up to 1/16 less than the smallest. Infinite if there is
   /// none.
   double smallest() const {
-    const std::int16_t first = std::min(least_[3], least_[7]);
+    const Words words = least_;
+    const std::int16_t first = words[3] < words[7] ? words[3] : words[7];
     return first == kNone ? std::numeric_limits<double>::infinity()
                           : fromFirst(first - std::numeric_limits<std::int16_t>::min());
   }
 
  private:
-  // As wide as the instructions of every x86-64 CPU.
-  using Bits [[gnu::vector_size(16)]] = std::uint64_t;
   using Words [[gnu::vector_size(16)]] = std::int16_t;
 
   static constexpr std::uint64_t kButSign = std::numeric_limits<std::int64_t>::max();
   static constexpr std::int16_t kInfinity = 0x7ff0;
   static constexpr std::int16_t kNone = std::numeric_limits<std::int16_t>::max();
 
-  static std::uint64_t bitsOf(double number) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &number, sizeof(bits));
-    return bits;
-  }
   static double fromFirst(int first) {
     const auto bits = static_cast<std::uint64_t>(first) << 48U;
     double number = 0.0;
@@ -74,13 +76,7 @@ class Magnitudes {
     return number;
   }
 
-  void seeTwo(const void* numbers) {
-    Bits bits;
-    std::memcpy(&bits, numbers, sizeof(bits));
-    seeBits(bits);
-  }
-
-  void seeBits(Bits bits) {
+  void seeBits(BitsPair bits) {
     bits &= kButSign;
     const auto first = reinterpret_cast<Words>(bits);
     largest_ = first > largest_ ? first : largest_;

@@ -41,19 +41,17 @@ void readMarker(WireReader& reader, const Limits& limits, std::size_t& boxes,
   change.frame_locked = block.number<std::uint8_t>() != 0;
   change.lifetime = lifetime > kShortestLifetime ? lifetime : 0;
 
-  const std::uint32_t points = reader.count(kPointSize);
+  const WireArray points = reader.array(kPointSize);
   const bool adds = action == Marker::ADD && (type == Marker::CUBE || type == Marker::CUBE_LIST);
   if (adds) {
-    boxes += type == Marker::CUBE ? 1 : points;
+    boxes += type == Marker::CUBE ? 1 : points.count;
     if (boxes > limits.boxes) {
       message.problem = tooManyBoxes(limits.boxes);
       return;
     }
   }
   if (adds && type == Marker::CUBE_LIST) {
-    change.addPoints(shape, reader.vectors(points));
-  } else {
-    reader.skip(std::uint64_t{points} * kPointSize);
+    change.addPoints(shape, points);
   }
   if (adds && type == Marker::CUBE) {
     change.add(change.id, shape.center, shape.orientation, shape.size);

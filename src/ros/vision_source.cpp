@@ -40,18 +40,17 @@ std::string readClass(WireReader& reader) {
 void decodeVisionBoundingBox3DArray(WireReader& reader, const Limits& limits,
                                     DecodedMessage& message) {
   const WireHeader header = reader.header();
-  const std::uint32_t boxes = reader.count(WireBox::kSize);
-  WholeSet set(boxes, limits, header.stamp, message);
-  if (boxes == 0 || !message.problem.empty()) {
+  const WireArray boxes = reader.array(WireBox::kSize);
+  WholeSet set(boxes.count, limits, header.stamp, message);
+  if (boxes.count == 0 || !message.problem.empty()) {
     return;
   }
   BoxChange& change = set.changeOf(header, "");  // of all boxes
   if (isBadFrame(change.frame)) {
-    change.reject(Rejection::kFrame, boxes, "'" + std::string(header.frame) + "'", 0);
-    reader.skip(std::uint64_t{boxes} * WireBox::kSize);
+    change.reject(Rejection::kFrame, boxes.count, "'" + std::string(header.frame) + "'", 0);
     return;
   }
-  change.addAll(reader.boxes(boxes));
+  change.addAll(boxes);
 }
 
 void decodeVisionDetection3DArray(WireReader& reader, const Limits& limits,

@@ -11,7 +11,6 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <vector>
 
 #include <ros/time.h>
 
@@ -32,33 +31,20 @@ void copyNumbers(const std::uint8_t* bytes, Numbers&& numbers) {
 /// geometry_msgs/Pose and, right after it, a geometry_msgs/Vector3 of full sides [m].
 struct WireBox {
   static constexpr std::size_t kSize = 10 * sizeof(double);
+  /// Where they begin in its bytes.
+  static constexpr std::size_t kOrientation = 3 * sizeof(double);
+  static constexpr std::size_t kSides = 7 * sizeof(double);
 
   WireBox() : center(0.0, 0.0, 0.0), orientation(0.0, 0.0, 0.0, 0.0), size(0.0, 0.0, 0.0) {}
   explicit WireBox(const std::uint8_t* bytes) {
     copyNumbers(bytes, center);
-    copyNumbers(bytes + 3 * sizeof(double), orientation.coeffs());
-    copyNumbers(bytes + 7 * sizeof(double), size);
+    copyNumbers(bytes + kOrientation, orientation.coeffs());
+    copyNumbers(bytes + kSides, size);
   }
 
   Vector3 center;
   Quaternion orientation;
   Vector3 size;
-};
-
-/// An array of them, still in the bytes.
-class WireBoxes {
- public:
-  WireBoxes(const std::uint8_t* bytes, std::uint32_t count) : bytes_(bytes), count_(count) {}
-
-  std::uint32_t size() const { return count_; }
-  WireBox operator[](std::uint32_t n) const { return WireBox(bytes_ + n * WireBox::kSize); }
-  /// The bytes of three numbers of a box.
-  const std::uint8_t* centerOf(std::uint32_t n) const { return bytes_ + n * WireBox::kSize; }
-  const std::uint8_t* sizeOf(std::uint32_t n) const { return centerOf(n) + 7 * sizeof(double); }
-
- private:
-  const std::uint8_t* bytes_;
-  std::uint32_t count_;
 };
 
 /// Fields of fixed sizes, one behind the other, that are known to fit: their reader has looked
@@ -97,6 +83,7 @@ class WireBlock {
     return value;
   }
   void skip(std::size_t size) { next_ += size; }
+  const std::uint8_t* bytes() const { return next_; }
 
  private:
   const std::uint8_t* next_;
@@ -198,26 +185,9 @@ class WireReader {
     return value;
   }
 
-  /// So many of them; none if they do not fit.
-  std::vector<Vector3> vectors(std::uint32_t count) {
-    std::vector<Vector3> values;
-    const std::uint8_t* const bytes = take(std::uint64_t{count} * kVector);
-    if (bytes != nullptr && count > 0) {
-      values.resize(count);
-      std::memcpy(static_cast<void*>(values.data()), bytes, count * kVector);
-    }
-    return values;
-  }
-
   WireBox box() {
     const std::uint8_t* bytes = take(WireBox::kSize);
     return bytes ? WireBox(bytes) : WireBox();
-  }
-
-  /// So many of them; none if they do not fit.
-  WireBoxes boxes(std::uint32_t count) {
-    const std::uint8_t* const bytes = take(std::uint64_t{count} * WireBox::kSize);
-    return {bytes, bytes ? count : 0};
   }
 
   /// geometry_msgs/Quaternion: x, y, z, w, which is Eigen's own order.

@@ -14,10 +14,25 @@ namespace {
 
 const OrientedBox kShape{Vector3(0.1, -0.2, 0.3), Quaternion(0.8, 0.0, 0.0, 0.6),
                          Vector3(0.5, 0.0, 1.5)};
+const OrientedBox kUpright{Vector3::Zero(), Quaternion::Identity(), Vector3::Ones()};
 
-std::shared_ptr<const PointList> pointList(std::vector<Vector3> points,
-                                           const OrientedBox& shape = kShape) {
-  return std::make_shared<PointList>(-3, shape, std::move(points));
+/// Points as the bytes of a message.
+WireArray wireArray(const std::vector<Vector3>& points) {
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(points.data());
+  return {static_cast<std::uint32_t>(points.size()), WireBlock(bytes)};
+}
+
+BoxList pointList(const std::vector<Vector3>& points, const OrientedBox& shape = kShape,
+                  std::int64_t first_id = -3) {
+  BoxList list;
+  list.setPoints(first_id, shape, wireArray(points));
+  return list;
+}
+
+bool areSurelyWithin(double limit, const OrientedBox& shape, const std::vector<Vector3>& points) {
+  Magnitudes places;
+  places.see(points.data(), 3 * points.size());
+  return areSurelyWithin(limit, shape.center, shape.orientation, places);
 }
 
 void expectSame(const IdentifiedBox& a, const IdentifiedBox& b) {
@@ -28,7 +43,7 @@ void expectSame(const IdentifiedBox& a, const IdentifiedBox& b) {
 }
 
 TEST(BoxList, SaysTheSameOfPointsOnceTheyAreSpread) {
-  const BoxList list(pointList({Vector3(1.0, 0.0, 0.0), Vector3(0.0, 1.0 / 3.0, 7.0)}));
+  const BoxList list = pointList({Vector3(1.0, 0.0, 0.0), Vector3(0.0, 1.0 / 3.0, 7.0)});
   BoxList spread = list;
   ASSERT_EQ(spread.each().size(), 2U);
   ASSERT_EQ(spread.size(), 2U);
@@ -47,17 +62,17 @@ TEST(BoxList, SaysTheSameOfPointsOnceTheyAreSpread) {
 
 TEST(BoxList, TellsListsApartByTheLastBit) {
   const std::vector<Vector3> points = {Vector3(1.0, 0.0, 0.0), Vector3(0.0, 2.0, 7.0)};
-  const BoxList list(pointList(points));
-  EXPECT_TRUE(list.isSame(BoxList(pointList(points))));
+  const BoxList list = pointList(points);
+  EXPECT_TRUE(list.isSame(pointList(points)));
   EXPECT_TRUE(BoxList().isSame(BoxList()));
   std::vector<Vector3> moved = points;
   moved[1].z() = std::nextafter(7.0, 8.0);
-  EXPECT_FALSE(list.isSame(BoxList(pointList(moved))));
+  EXPECT_FALSE(list.isSame(pointList(moved)));
   OrientedBox wider = kShape;
   wider.half_extents.y() = 5e-324;
-  EXPECT_FALSE(list.isSame(BoxList(pointList(points, wider))));
-  EXPECT_FALSE(list.isSame(BoxList(std::make_shared<PointList>(-4, kShape, std::vector(points)))));
-  EXPECT_FALSE(list.isSame(BoxList(pointList({points[0]}))));
+  EXPECT_FALSE(list.isSame(pointList(points, wider)));
+  EXPECT_FALSE(list.isSame(pointList(points, kShape, -4)));
+  EXPECT_FALSE(list.isSame(pointList({points[0]})));
   BoxList each = list;
   each.each();
   EXPECT_FALSE(each.isSame(list)) << "another form";
@@ -90,23 +105,38 @@ TEST(BoxList, IsSurelyWithinOnlyWhatItsBoxesAreWithin) {
         Quaternion(Eigen::AngleAxisd(angle, Vector3::Unit(static_cast<int>(random() % 3)))),
         Vector3::Ones()};
     const double limit = random() % 2 == 0 ? 1e7 : 2.0;
-    const auto list = pointList({somePlace(random), somePlace(random)}, shape);
+    const std::vector<Vector3> points = {somePlace(random), somePlace(random)};
+    const BoxList list = pointList(points, shape);
     const bool is_within =
-        isWithin(limit, (*list)[0].box.center) && isWithin(limit, (*list)[1].box.center);
-    const bool is_sure = list->isSurelyWithin(limit);
+        isWithin(limit, list[0].box.center) && isWithin(limit, list[1].box.center);
+    const bool is_sure = areSurelyWithin(limit, shape, points);
     ASSERT_TRUE(is_within || !is_sure) << n;
     sure += is_sure ? 1 : 0;
     within += is_within ? 1 : 0;
   }
   EXPECT_GT(sure, 1000U);
   EXPECT_GT(within, sure);
-  EXPECT_TRUE(pointList({}, OrientedBox{Vector3::Zero(), Quaternion::Identity(), Vector3::Ones()})
-                  ->isSurelyWithin(1.0));
+  EXPECT_TRUE(areSurelyWithin(1.0, kUpright, {}));
 }
 
 TEST(BoxList, IsSureOfPlacesOnEarthInMetresFromItsEquator) {
-  const OrientedBox upright{Vector3::Zero(), Quaternion::Identity(), Vector3::Ones()};
-  EXPECT_TRUE(pointList({Vector3(500000.0, 9300000.0, 0.0)}, upright)->isSurelyWithin(1e7));
+  EXPECT_TRUE(areSurelyWithin(1e7, kUpright, {Vector3(500000.0, 9300000.0, 0.0)}));
+}
+
+TEST(BoxList, ReadsInterleavedListsAsEachSays) {
+  const BoxList turned = pointList({Vector3(1.0, 2.0, 3.0), Vector3(4.0, 5.0, 6.0)});
+  const BoxList upright = pointList({Vector3(7.0, 8.0, 9.0)}, kUpright, 5);
+  BoxList full = turned;
+  full.each();
+  const BoxList::Reader of_turned(turned);
+  const BoxList::Reader of_upright(upright);
+  const BoxList::Reader of_full(full);
+  expectSame(of_turned[1], full[1]);
+  expectSame(of_full[1], full[1]);
+  EXPECT_EQ(of_upright[0].box.center, Vector3(7.0, 8.0, 9.0));
+  EXPECT_EQ(of_upright[0].id, 5);
+  expectSame(of_turned[0], full[0]);
+  EXPECT_NE(of_turned[0].box.center.x(), 1.1) << "it is turned";
 }
 
 }  // namespace
