@@ -23,6 +23,9 @@ constexpr std::chrono::milliseconds kSuccessionCheck(50);
 /// Between looks at who publishes.
 constexpr std::chrono::milliseconds kPublisherCheck(500);
 
+/// The master may take its time, or hang.
+constexpr std::chrono::milliseconds kPatience(50);
+
 }  // namespace
 
 PublisherWatch::PublisherWatch(const Parameters& parameters, BoxTracker& tracker,
@@ -44,20 +47,37 @@ void PublisherWatch::stop() {
   thread_.join();
 }
 
-void PublisherWatch::meet(std::size_t topic, const Succession::Connection& connection) {
-  std::unique_lock<std::timed_mutex> lock(mutex_);
-  if (!successions_[topic].isNew(connection)) {
-    return;
+std::optional<Succession::Addresses> PublisherWatch::meet(
+    std::size_t topic, const Succession::Connection& connection) {
+  {
+    const std::lock_guard<std::timed_mutex> lock(mutex_);
+    if (!successions_[topic].isNew(connection)) {
+      return std::nullopt;
+    }
   }
-  lock.unlock();
   auto connected = connectedPublishers();
-  lock.lock();
-  successions_[topic].hear(connection,
-                           connected ? std::move((*connected)[parameters_.box_topics[topic].topic])
-                                     : Succession::Addresses(),
-                           tracker_.lastWord(), Clock::now());
-  lock.unlock();
+  return connected ? std::move((*connected)[parameters_.box_topics[topic].topic])
+                   : Succession::Addresses();
+}
+
+void PublisherWatch::hear(std::size_t topic, const Succession::Connection& connection,
+                          Succession::Addresses&& publishers) {
+  successions_[topic].hear(connection, std::move(publishers), tracker_.lastWord(), Clock::now());
+}
+
+void PublisherWatch::look(std::size_t topic) {
+  const Clock::time_point deadline = Clock::now() + kPatience;
   bell_.ring();
+  while (Clock::now() < deadline) {
+    const std::uint64_t rings = looked_.rings();
+    {
+      const std::lock_guard<std::timed_mutex> lock(mutex_);
+      if (successions_[topic].isLooked()) {
+        return;
+      }
+    }
+    looked_.waitPast(rings, deadline);
+  }
 }
 
 void PublisherWatch::run(BoxTopics& topics) {
@@ -65,6 +85,7 @@ void PublisherWatch::run(BoxTopics& topics) {
   while (!stopping_) {
     const std::uint64_t rings = bell_.rings();
     forgetFormerPublishers();
+    looked_.ring();
     if (Clock::now() >= publisher_check) {
       checkPublishers(topics);
       checkClock();

@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -33,9 +34,17 @@ class PublisherWatch {
   /// Returns when nothing is watched any more. Must be called after start().
   void stop();
 
-  /// To be called before each message of the topic is received, without the mutex: of somebody new
-  /// it is noted who publishes, since by the time of a look that may be gone again.
-  void meet(std::size_t topic, const Succession::Connection& connection);
+  /// Who publishes the topic, if that connection is a new one: by the time of a look they may be
+  /// gone again. To be called before each message is received, without the mutex.
+  std::optional<Succession::Addresses> meet(std::size_t topic,
+                                            const Succession::Connection& connection);
+  /// Notes that. With the mutex locked until the message is received: what former publishers said
+  /// is not to be forgotten before.
+  void hear(std::size_t topic, const Succession::Connection& connection,
+            Succession::Addresses&& publishers);
+  /// Has a look at whether those are gone, and returns when they were forgotten, or soon: no scene
+  /// should be built in vain. Without the mutex.
+  void look(std::size_t topic);
 
  private:
   void run(BoxTopics& topics);
@@ -49,6 +58,7 @@ class PublisherWatch {
   const std::function<void()> forgotten_;
   std::vector<Succession> successions_;  ///< of the publishers of each topic
   Bell bell_;
+  Bell looked_;
   std::atomic<bool> stopping_{false};
   std::thread thread_;
 };

@@ -18,6 +18,7 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -128,16 +129,22 @@ void SceneMonitor::Impl::receive(const Backlog::Message& message, DecodedMessage
   const BoxSource* const source = message.raw->source;
   const std::string problem = decoded.problem;
   const BoxSource* former = nullptr;
-  publishers.meet(topic, message.raw->connection);
+  std::optional<Succession::Addresses> met = publishers.meet(topic, message.raw->connection);
   {
     const std::lock_guard<std::timed_mutex> lock(mutex);
     builder.noteChange();
     noticeTime();
     former = tracker.lastSource(topic);
+    if (met) {
+      publishers.hear(topic, message.raw->connection, std::move(*met));
+    }
     tracker.lose(topic, message.dropped, now);
     tracker.receive(topic, source, std::move(decoded), now);
     history.follow(tracker, now);
     tf_wanted = tracker.isWaiting();
+  }
+  if (met) {
+    publishers.look(topic);
   }
   history.remember();
   bell.ring();

@@ -40,6 +40,9 @@ class Succession {
   /// The former one may go a little later than the new one comes.
   bool asks(Clock::time_point now) const { return !looked_ || now < asks_until_; }
 
+  /// Whether there was a look since a new publisher spoke.
+  bool isLooked() const { return looked_; }
+
   /// `publishers` are those that the topic has now: one that was restarted has another address.
   /// @return the last word to be forgotten, or nothing.
   std::optional<std::uint64_t> look(const Addresses& publishers);

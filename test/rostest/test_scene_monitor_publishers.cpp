@@ -88,6 +88,29 @@ TEST_F(MonitorOfOneTopic, HearsARestartedPublisher) {
   }
 }
 
+TEST_F(MonitorOfOneTopic, HasTheBoxesOfTheFormerPublisherOrTheNewOne) {
+  start();
+  say({cube("map", 0, 1.0)});
+  ASSERT_TRUE(holds("0:1 "));
+  std::atomic<bool> done{false};
+  std::atomic<int> empty{0};
+  std::thread watcher([&] {
+    while (!done) {
+      empty += monitor_->watchedScene()->scene.size() == 0 ? 1 : 0;
+    }
+  });
+  for (int id = 1; id <= 50; ++id) {
+    talker_.reset();  // else it is the same publisher for roscpp
+    talker_ = std::make_unique<ArrayTalker>(topic_);
+    EXPECT_TRUE(talker_->isHeard());
+    say({cube("map", id, 1.0)});
+    EXPECT_TRUE(holds(std::to_string(id) + ":1 "));
+  }
+  done = true;
+  watcher.join();
+  EXPECT_EQ(empty, 0);
+}
+
 TEST_F(MonitorOfOneTopic, NamesATypeThatItDoesNotKnowAndHearsTheNextPublisher) {
   listen();
   {
