@@ -90,8 +90,9 @@ struct alignas(64) Closest8 {
   Index8 box;
 };
 
-/// The closest box of every lane. (In one function: what it called would not be cloned with it.)
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+/// The closest box of every lane. (In one function: what it called would not be cloned with it. Not
+/// under ThreadSanitizer, which has not begun when a clone is chosen.)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
 void closestOfEach(const Slabs8* blocks, std::size_t count, const SlabComponent<double>& ray,
