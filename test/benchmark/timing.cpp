@@ -110,7 +110,7 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-Spread spreadOf(std::vector<double> values) {
+Spread spreadOf(const std::vector<double>& values) {
   return {quantile(values, 0.5), quantile(values, 0.25), quantile(values, 0.75)};
 }
 

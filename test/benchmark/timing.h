@@ -18,7 +18,7 @@ struct Spread {
 };
 
 /// Takes the values out of order.
-Spread spreadOf(std::vector<double> values);
+Spread spreadOf(const std::vector<double>& values);
 /// The smallest value that is not below `share` of all; NaN if there are none.
 double quantile(std::vector<double> values, double share);
 

@@ -208,7 +208,7 @@ TEST(BoxStore, CountsAGivenUpWordUntilTheNext) {
   EXPECT_EQ(store.waiting(0), 0U);
   EXPECT_EQ(store.rejected(0), 1U);
   EXPECT_EQ(store.items(0).at("a").at(1).problem, "why");
-  const Word next = store.hear(0, boxAt(2), ros::Time(100));
+  store.hear(0, boxAt(2), ros::Time(100));
   EXPECT_EQ(store.rejected(0), 0U);
   store.giveUp(word, "old");
   EXPECT_EQ(store.rejected(0), 0U) << "a later word has come";
