@@ -31,6 +31,8 @@ namespace avx2 {
 #include "kernels/generic/lanes_x86.h"
 #include "kernels/generic/lanes_avx2.h"
 #include "kernels/generic/ray.h"
+#include "kernels/generic/ray_in_double.h"
+#include "kernels/generic/unusual_ray.h"
 #include "kernels/generic/box_times.h"
 #include "kernels/generic/blocks.h"
 #include "kernels/generic/short_trees.h"

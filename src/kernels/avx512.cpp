@@ -32,6 +32,8 @@ namespace avx512 {
 #include "kernels/generic/lanes_x86.h"
 #include "kernels/generic/lanes_avx512.h"
 #include "kernels/generic/ray.h"
+#include "kernels/generic/ray_in_double.h"
+#include "kernels/generic/unusual_ray.h"
 #include "kernels/generic/box_times.h"
 #include "kernels/generic/blocks.h"
 #include "kernels/generic/short_trees.h"

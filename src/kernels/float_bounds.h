@@ -6,19 +6,20 @@
 
 namespace box_query::kernels::bounds {
 
-/// Rays: what the shifts of their planes lack, relative to |o_i r_i|: 5.3u. See generic/ray.h.
+/// Rays against bounds: how far the planes are moved apart, relative to |o|_1 of the ray and the
+/// size of the scene: 9u. See generic/ray.h.
+constexpr double kApart = 0x1p-20;
+/// Unusual rays: what the shifts of their planes lack, relative to |o_i r_i|: 5.3u. See
+/// generic/unusual_ray.h.
 constexpr double kShiftError = 0x1p-20;
-/// And the parameters at the planes, on both sides: 8.4u.
-constexpr double kFarther = 1.0 + 0x1p-20;
+/// And the parameters at the planes, relative to the end of the ray: 4.2u.
+constexpr double kAlongError = 0x1p-20;
 /// How far the planes of an axis are moved apart along which a ray hardly goes, times its end: more
 /// than 2.
 constexpr double kFlat = 2.1;
 /// Rays against whole boxes: how far their planes are moved outward, relative to |P - M|_1 of the
 /// ray, and to |C - M|_1 + |e|_1 of the box, M the center of the scene: 19u. See generic/blocks.h.
 constexpr double kBlock = 0x1p-19;
-/// Rays in lanes against bounds: how far the planes are moved apart, relative to |o|_1 of the ray
-/// and the size of the scene: 9u. See generic/rays_in_lanes.h.
-constexpr double kInLanes = 0x1p-20;
 /// Numbers that are rounded to float upward by it.
 constexpr double kUp = 1.0 + 0x1p-20;
 /// More than what is lost where floats underflow.

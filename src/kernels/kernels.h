@@ -19,12 +19,11 @@ struct Kernels {
 
   /// Finds all boxes that may be the first that is entered: whatever is not left in `found`, or
   /// was not taken, is certainly not entered before the one of them that is.
-  /// @return whether the component is taken
-  bool (*closest)(const SceneView&, const RayQuery&, Found& found, Take take, void* context);
+  Answer (*closest)(const SceneView&, const RayQuery&, Found& found);
 
   /// Whether a box is certainly met within the range. If that is undecided, the boxes that may be
   /// are left in `found`, or were taken.
-  Answer (*any)(const SceneView&, const RayQuery&, Found& found, Take take, void* context);
+  Answer (*any)(const SceneView&, const RayQuery&, Found& found);
 
   /// The same of many rays, several of them at a time: what one waits for, or looks up, serves
   /// others. They call deliver() once for each that meets a box or may, in any order, and for no
@@ -35,8 +34,7 @@ struct Kernels {
   Together any_of_segments_together;
 
   /// Finds all boxes that may be met.
-  /// @return whether the component is taken
-  bool (*all)(const SceneView&, const RayQuery&, Found& found, Take take, void* context);
+  Answer (*all)(const SceneView&, const RayQuery&, Found& found);
 
   /// Offers all boxes that may be within the bound of a segment, near ones first where it can tell.
   void (*nearest)(const SceneView&, const SegmentQuery&, Approach approach, void* context,

@@ -16,6 +16,8 @@ namespace portable {
 // clang-format off
 #include "kernels/generic/lanes_portable.h"
 #include "kernels/generic/ray.h"
+#include "kernels/generic/ray_in_double.h"
+#include "kernels/generic/unusual_ray.h"
 #include "kernels/generic/box_times.h"
 #include "kernels/generic/blocks.h"
 #include "kernels/generic/short_trees.h"

@@ -43,10 +43,11 @@ struct alignas(64) BoxBlock {
   float extent[3][kSlots];  ///< half extents, padded: see generic/blocks.h
 };
 
-/// Of what is compared with a block, origin and center and half extents: at most this far away.
+/// Boxes in blocks, of which a word has a bit each.
+constexpr int kMostInBlocks = 48;
+
+/// Center and half extents of a box in a block: at most this far away.
 constexpr double kFarthestInBlocks = 0x1p40;
-/// The largest component of its direction, and its inverse: at most this.
-constexpr double kLongestInBlocks = 0x1p20;
 
 /// Nodes of one level: the children of node n are first[n], first[n] + 1, ... of the level below,
 /// of the lowest level records.
@@ -74,7 +75,10 @@ struct SceneView {
   const std::uint32_t* box_of_record;
   alignas(32) double center[4];
   /// Around all boxes, relative to the center: [minimum or maximum][axis].
-  alignas(32) double around[2][4];
+  alignas(16) float around[2][4];
+  /// How far its planes are moved apart for a ray in float that starts at the center: see
+  /// generic/ray.h.
+  float apart;
   bool has_aligned;  ///< some records are of aligned boxes
   /// How far a ray goes in the mean before it meets a box.
   double mean_free_path;
@@ -86,8 +90,8 @@ struct SceneView {
 /// origin is farther than kFarthestOrigin from the center of the scene, the kernels do not take it.
 struct RayQuery {
   const double* origin;
-  const double* direction;
-  bool has_end;      ///< t <= 1
+  const double* direction;  ///< or the end of a segment
+  bool is_segment;
   double max_range;  ///< [m] a box that is certainly entered beyond it is none
   /// Boxes to look at, a bit each by their number in the scene, or null.
   const std::uint64_t* mask;
@@ -111,35 +115,50 @@ struct Work {
   std::uint64_t turned_boxes = 0;  ///< of these, not aligned
 };
 
-/// What a query found out. More candidates than it holds go to the caller in portions.
-struct Found {
-  static constexpr int kCapacity = 64;
-  int count;
-  /// A box that is certainly entered before this parameter is certainly in range.
-  double t_inside;
-  Work work;
-  Candidate candidates[kCapacity];
-};
+struct Found;
 
 /// Takes the candidates of a full list; the query goes on with an empty one.
 /// @return of the closest: an upper bound of the parameter where the first of them is entered, as
 /// far as the caller knows; of the others: negative to end the query
 using Take = double (*)(void* context, const Found& found);
 
-enum class Answer { kNotTaken, kUndecided, kYes };
+/// Where what a query finds out goes.
+struct Found {
+  static constexpr int kCapacity = 64;
+
+  // (Without an initializer for what a query sets: most of them need little of it.)
+  Found(Work* what_was_done, Take more, void* its_context)
+      : count(0), work(what_was_done), take(more), context(its_context) {}
+  Found() : Found(nullptr, nullptr, nullptr) {}
+
+  int count;
+  Work* work;  ///< is added to
+  Take take;   ///< for more candidates than there is room for
+  void* context;
+  /// A box that is certainly entered before this parameter is certainly in range.
+  double t_inside;
+  Candidate candidates[kCapacity];
+};
+
+enum class Answer {
+  kNotTaken,
+  kNone,       ///< no box
+  kUndecided,  ///< what was found says more, or those that took it
+  kYes         ///< a box is certainly met
+};
 
 /// Rays, or segments, to ask about together.
 struct RayQueries {
-  const double* rays;  ///< origin and direction of each, six numbers, one after the other
+  /// Origin and direction of each, or start and end, six numbers, one after the other.
+  const double* rays;
   std::size_t count;
   const double* max_ranges;    ///< see RayQuery
   std::size_t range_distance;  ///< from one to the next: 0 if it is the same for all
   const std::uint64_t* mask;
 
   double maxRange(std::size_t i) const { return max_ranges[i * range_distance]; }
-  /// @param has_end see RayQuery
-  RayQuery query(std::size_t i, bool has_end) const {
-    return {rays + 6 * i, rays + 6 * i + 3, has_end, maxRange(i), mask};
+  RayQuery query(std::size_t i, bool is_segment) const {
+    return {rays + 6 * i, rays + 6 * i + 3, is_segment, maxRange(i), mask};
   }
 };
 

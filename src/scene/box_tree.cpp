@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene/box_tree.h"
 
+#include "kernels/float_bounds.h"
 #include "scene/box_bounds.h"
 #include "scene/tree_builder.h"
 
@@ -15,8 +16,7 @@ namespace {
 /// Boxes that are sooner compared themselves than by their bounds.
 constexpr std::size_t kInBlocks = 16;
 /// Where a ray through all of the scene meets more than one of the bounds.
-constexpr std::size_t kCrowdedInBlocks = 48;
-static_assert(kCrowdedInBlocks <= 64, "a bit each");
+constexpr std::size_t kCrowdedInBlocks = kernels::kMostInBlocks;
 
 /// The median of a sample of the boxes that kernels may take, so that a few boxes far away do not
 /// cost the others the precision of float.
@@ -150,11 +150,16 @@ kernels::SceneView BoxTree::view() const {
   view.records = records_.data();
   view.num_records = static_cast<std::uint32_t>(records_.size());
   view.box_of_record = box_of_record_.data();
+  double reach = 0.0;
   for (int i = 0; i < 3; ++i) {
     view.center[i] = center_[i];
-    view.around[0][i] = around_[0][i];
-    view.around[1][i] = around_[1][i];
+    // (As they were found, from floats.)
+    view.around[0][i] = static_cast<float>(around_[0][i]);
+    view.around[1][i] = static_cast<float>(around_[1][i]);
+    reach += std::max(std::fabs(around_[0][i]), std::fabs(around_[1][i]));
   }
+  using namespace kernels::bounds;
+  view.apart = static_cast<float>((reach * kApart + kFloatUnderflow) * (kUp * kUp));
   view.has_aligned = has_aligned_;
   view.mean_free_path = mean_free_path_;
   return view;

@@ -16,17 +16,13 @@
 
 namespace box_query {
 
-/// What a kernel is asked about a ray or a segment; `direction` holds that of a segment.
-inline kernels::RayQuery rayQuery(const Ray& ray, double max_range, const BoxMask* mask,
-                                  Vector3& /*direction*/) {
+/// What a kernel is asked about a ray or a segment.
+inline kernels::RayQuery rayQuery(const Ray& ray, double max_range, const BoxMask* mask) {
   return {ray.origin.data(), ray.direction.data(), false, max_range,
           mask != nullptr ? mask->words() : nullptr};
 }
-inline kernels::RayQuery rayQuery(const Segment& segment, double max_range, const BoxMask* mask,
-                                  Vector3& direction) {
-  // Where the end is not moderate, its difference need not tell: no direction is not taken.
-  direction = isModerate(segment.end) ? Vector3(segment.end - segment.start) : Vector3::Zero();
-  return {segment.start.data(), direction.data(), true, max_range,
+inline kernels::RayQuery rayQuery(const Segment& segment, double max_range, const BoxMask* mask) {
+  return {segment.start.data(), segment.end.data(), true, max_range,
           mask != nullptr ? mask->words() : nullptr};
 }
 

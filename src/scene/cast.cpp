@@ -127,31 +127,36 @@ ClosestBox Scene::Impl::decidedClosestOf(const Ray& ray, double max_range, const
 }
 
 /// Calls answer(found) with what the kernels find, or null where they leave it open.
-template <typename Answer>
-auto Scene::Impl::castByKernels(const Ray& ray, double max_range, const BoxMask* mask,
-                                Answer&& answer) const {
-  kernels::Found found;
-  Vector3 direction;
+/// @param miss what there is to say if it is nothing
+template <typename Miss, typename Answer>
+[[gnu::always_inline]] inline auto Scene::Impl::castByKernels(const Ray& ray, double max_range,
+                                                              const BoxMask* mask, const Miss& miss,
+                                                              Answer&& answer) const {
   bool too_many = false;
-  const auto give_up = [](void* context, const kernels::Found&) {
-    *static_cast<bool*>(context) = true;
-    return -kInf;
-  };
-  const bool taken =
-      kernels.closest(view, rayQuery(ray, max_range, mask, direction), found, give_up, &too_many);
-  countWork(found.work);
-  return answer(taken && !too_many ? &found : nullptr);
+  kernels::Found found(
+      &work_of_thread,
+      [](void* context, const kernels::Found&) {
+        *static_cast<bool*>(context) = true;
+        return -kInf;
+      },
+      &too_many);
+  const kernels::Answer found_out = kernels.closest(view, rayQuery(ray, max_range, mask), found);
+  if (found_out == kernels::Answer::kNone && tree.left_out().empty()) {
+    return miss;
+  }
+  const bool is_all = found_out != kernels::Answer::kNotTaken && !too_many;
+  return answer(is_all ? &found : nullptr);
 }
 
 Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
-  return impl_->castByKernels(ray, max_range, mask, [&](const kernels::Found* found) {
+  return impl_->castByKernels(ray, max_range, mask, Hit(), [&](const kernels::Found* found) {
     return impl_->hitOf(ray, max_range, mask, found);
   });
 }
 
 ClosestBox Scene::castClosest(const Ray& ray, double max_range,
                               const BoxMask* mask) const noexcept {
-  return impl_->castByKernels(ray, max_range, mask, [&](const kernels::Found* found) {
+  return impl_->castByKernels(ray, max_range, mask, ClosestBox(), [&](const kernels::Found* found) {
     return impl_->closestOf(ray, max_range, mask, found);
   });
 }

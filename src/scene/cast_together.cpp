@@ -14,38 +14,14 @@ namespace {
 /// Queries that the kernels get at once: many more than they work on at a time.
 constexpr std::size_t kQueries = 256;
 
-static_assert(sizeof(Ray) == 6 * sizeof(double), "kernels read the six numbers of rays in a row");
-
-/// As kernels read them.
-class RayNumbers {
- public:
-  const double* of(const Ray* rays, std::size_t /*count*/) { return rays->origin.data(); }
-};
-
-/// Copied, since the directions are not there.
-class SegmentNumbers {
- public:
-  const double* of(const Segment* segments, std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) {
-      Vector3 direction;
-      rayQuery(segments[k], 0.0, nullptr, direction);
-      for (int i = 0; i < 3; ++i) {
-        numbers_[k][0][i] = segments[k].start[i];
-        numbers_[k][1][i] = direction[i];
-      }
-    }
-    return numbers_[0][0];
-  }
-
- private:
-  double numbers_[kQueries][2][3];
-};
-
-inline RayNumbers numbersOf(const Ray*) {
-  return {};
+/// The six numbers of rays, or segments, in a row, as kernels read them.
+inline const double* numbersOf(const Ray* rays) {
+  static_assert(sizeof(Ray) == 6 * sizeof(double));
+  return rays->origin.data();
 }
-inline SegmentNumbers numbersOf(const Segment*) {
-  return {};
+inline const double* numbersOf(const Segment* segments) {
+  static_assert(sizeof(Segment) == 6 * sizeof(double));
+  return segments->start.data();
 }
 
 /// Sets all answers to that of rays, or segments, that meet nothing, and calls take(i, answer,
@@ -65,17 +41,14 @@ void askTogether(const Impl& scene, kernels::Together together, const Linear* li
     c.is_taken[query] = true;
     c.take(c.first + query, answer, found);
   };
-  auto numbers = numbersOf(linear);
   for (std::size_t first = 0; first < count; first += kQueries) {
     const std::size_t size = std::min(kQueries, count - first);
     std::fill_n(answers + first, size, miss);
-    const kernels::RayQueries queries{numbers.of(linear + first, size), size,
-                                      max_ranges.from(first), max_ranges.distance(),
+    const kernels::RayQueries queries{numbersOf(linear + first), size, max_ranges.from(first),
+                                      max_ranges.distance(),
                                       mask != nullptr ? mask->words() : nullptr};
     Context context{take, first, {}};
-    kernels::Work work;
-    together(scene.view, queries, deliver, &context, work);
-    countWork(work);
+    together(scene.view, queries, deliver, &context, work_of_thread);
     if (!scene.tree.left_out().empty()) {
       kernels::Found nothing;
       nothing.count = 0;

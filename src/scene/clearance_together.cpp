@@ -122,9 +122,7 @@ void Scene::clearance(const Segment* segments, std::size_t count, Clearance* cle
       return all[query]->offer(std::size_t{box}, DistanceBounds{near.lower, near.upper},
                                [&] { return estimateOf(near); });
     };
-    kernels::Work work;
-    impl_->kernels.nearest_together(impl_->view, queries, taken, approach, nearest, work);
-    countWork(work);
+    impl_->kernels.nearest_together(impl_->view, queries, taken, approach, nearest, work_of_thread);
     for (std::size_t k = 0; k < taken; ++k) {
       prefetch(nearest[k]->box());
     }

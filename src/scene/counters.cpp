@@ -6,20 +6,8 @@
 #include <box_query/counters.h>
 
 namespace box_query {
-namespace {
 
-// Of the model for libraries that are loaded with the program, one load away: a call of the dynamic
-// linker would cost a tenth of a short query. So few bytes are there for libraries that come later
-// too, as with nodelets.
-__attribute__((tls_model("initial-exec"))) thread_local kernels::Work work_of_thread;
-
-}  // namespace
-
-void countWork(const kernels::Work& work) noexcept {
-  work_of_thread.nodes += work.nodes;
-  work_of_thread.boxes += work.boxes;
-  work_of_thread.turned_boxes += work.turned_boxes;
-}
+__thread kernels::Work work_of_thread;
 
 QueryCounters queryCounters() noexcept {
   const exact::StageCounters& stages = exact::stageCounters();

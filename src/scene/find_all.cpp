@@ -42,14 +42,11 @@ std::vector<BoxIntersection> Scene::Impl::findAll(const T& linear, const BoxMask
   const DoubleComponent component = doubleComponent(linear);
   Indices maybe;
   const auto addAlong = [&](const auto& ray) {
-    kernels::Found found;
-    Vector3 direction;
+    kernels::Found found(&work_of_thread, addTo, &maybe);
     const auto ask = [&](const auto& half) {
-      const bool taken =
-          kernels.all(view, rayQuery(half, kInf, mask, direction), found, addTo, &maybe);
+      const kernels::Answer answer = kernels.all(view, rayQuery(half, kInf, mask), found);
       addTo(&maybe, found);
-      countWork(found.work);
-      return taken;
+      return answer != kernels::Answer::kNotTaken;
     };
     if (ask(ray)) {
       return true;

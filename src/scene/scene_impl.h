@@ -13,6 +13,8 @@ namespace box_query {
 
 template <typename T>
 class FirstEntered;
+template <typename Decide>
+struct Undecided;
 
 struct Scene::Impl {
   explicit Impl(std::vector<Box> all);
@@ -22,8 +24,9 @@ struct Scene::Impl {
   /// firstBlockage() for radius 0.
   Blockage firstMet(const Segment& segment, const BoxMask* mask) const;
 
-  template <typename Answer>
-  auto castByKernels(const Ray& ray, double max_range, const BoxMask* mask, Answer&& answer) const;
+  template <typename Miss, typename Answer>
+  auto castByKernels(const Ray& ray, double max_range, const BoxMask* mask, const Miss& miss,
+                     Answer&& answer) const;
 
   /// cast() and castClosest() behind the kernel.
   /// @param found all candidates, or null if they are still to be found
@@ -52,6 +55,10 @@ struct Scene::Impl {
   /// @param decide decide(index) says so exactly, where doubles cannot
   template <typename T, typename Decide>
   bool meetsAny(const T& linear, double max_range, const BoxMask* mask, Decide&& decide) const;
+  /// The same behind the kernel.
+  template <typename T, typename Decide>
+  bool decideAny(const T& linear, double max_range, const BoxMask* mask, kernels::Answer answer,
+                 kernels::Found& found, Undecided<Decide>& undecided) const;
 
   /// Calls visit(index, bounds, estimate) for all boxes that may be within `bound` of the segment:
   /// with DistanceBounds, and estimate() for the NearestEstimate. It returns the bound from then

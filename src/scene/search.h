@@ -50,67 +50,74 @@ void Scene::Impl::offerOthers(FirstEntered<T>& first, bool taken, double max_ran
 
 template <typename T>
 void Scene::Impl::findFirst(FirstEntered<T>& first, double max_range, const BoxMask* mask) const {
-  kernels::Found found;
-  Vector3 direction;
-  bool taken = kernels.closest(view, rayQuery(first.linear(), max_range, mask, direction), found,
-                               FirstEntered<T>::take, &first);
+  kernels::Found found(&work_of_thread, FirstEntered<T>::take, &first);
+  const auto ask = [&](const T& component) {
+    return kernels.closest(view, rayQuery(component, max_range, mask), found) !=
+           kernels::Answer::kNotTaken;
+  };
+  bool taken = ask(first.linear());
   if constexpr (std::is_same_v<T, Ray>) {
     if (const auto scaled = taken ? std::nullopt : withDirectionNearOne(first.linear())) {
       // The parameters of the candidates are those of another direction, their boxes are the same.
-      const auto offerBoxes = [](void* context, const kernels::Found& some) {
+      found.take = [](void* context, const kernels::Found& some) {
         forEachCandidate(some, [&](const kernels::Candidate& c) {
           static_cast<FirstEntered<T>*>(context)->offer(c.box, kNoEnd);
           return true;
         });
         return kNoEnd;
       };
-      taken = kernels.closest(view, rayQuery(*scaled, max_range, mask, direction), found,
-                              offerBoxes, &first);
-      countWork(found.work);
-      offerBoxes(&first, found);
+      taken = ask(*scaled);
+      found.take(&first, found);
       offerOthers(first, taken, max_range, mask);
       return;
     }
   }
-  countWork(found.work);
   first.offer(found);
   offerOthers(first, taken, max_range, mask);
 }
 
-template <typename T, typename Decide>
-bool Scene::Impl::meetsAny(const T& linear, double max_range, const BoxMask* mask,
-                           Decide&& decide) const {
-  struct Undecided {
-    Decide& decide;
-    bool met = false;
+/// Candidates of a search for any box.
+template <typename Decide>
+struct Undecided {
+  Decide& decide;
+  bool met = false;
 
-    static double take(void* context, const kernels::Found& found) {
-      auto& self = *static_cast<Undecided*>(context);
-      self.met = self.met || !forEachCandidate(found, [&](const kernels::Candidate& c) {
-                   return !self.decide(c.box);
-                 });
-      return self.met ? -1.0 : 1.0;
-    }
-  };
-  Undecided undecided{decide};
-  kernels::Found found;
-  Vector3 direction;
-  const auto ask = [&](const T& component) {
-    const auto answer = kernels.any(view, rayQuery(component, max_range, mask, direction), found,
-                                    Undecided::take, &undecided);
-    countWork(found.work);
-    return answer;
-  };
-  kernels::Answer answer = ask(linear);
+  /// For kernels::Found.
+  static double take(void* context, const kernels::Found& found) {
+    auto& self = *static_cast<Undecided*>(context);
+    self.met = self.met || !forEachCandidate(found, [&](const kernels::Candidate& c) {
+                 return !self.decide(c.box);
+               });
+    return self.met ? -1.0 : 1.0;
+  }
+};
+
+template <typename T, typename Decide>
+[[gnu::always_inline]] inline bool Scene::Impl::meetsAny(const T& linear, double max_range,
+                                                         const BoxMask* mask,
+                                                         Decide&& decide) const {
+  Undecided<Decide> undecided{decide};
+  kernels::Found found(&work_of_thread, undecided.take, &undecided);
+  const kernels::Answer answer = kernels.any(view, rayQuery(linear, max_range, mask), found);
+  // As a rule the kernel has decided everything.
+  return answer == kernels::Answer::kYes ||
+         (!(answer == kernels::Answer::kNone && tree.left_out().empty()) &&
+          decideAny(linear, max_range, mask, answer, found, undecided));
+}
+
+template <typename T, typename Decide>
+[[gnu::noinline]] bool Scene::Impl::decideAny(const T& linear, double max_range,
+                                              const BoxMask* mask, kernels::Answer answer,
+                                              kernels::Found& found,
+                                              Undecided<Decide>& undecided) const {
   if constexpr (std::is_same_v<T, Ray>) {
     if (answer == kernels::Answer::kNotTaken) {
       if (const auto scaled = withDirectionNearOne(linear)) {
-        answer = ask(*scaled);
+        answer = kernels.any(view, rayQuery(*scaled, max_range, mask), found);
       }
     }
   }
-  if (answer == kernels::Answer::kYes || undecided.met ||
-      Undecided::take(&undecided, found) < 0.0) {
+  if (answer == kernels::Answer::kYes || undecided.met || undecided.take(&undecided, found) < 0.0) {
     return true;
   }
   const bool taken = answer != kernels::Answer::kNotTaken;
@@ -124,7 +131,7 @@ bool Scene::Impl::meetsAny(const T& linear, double max_range, const BoxMask* mas
     forEachOther(tree, taken, boxes.size(), mask, [&](std::size_t i) {
       const kernels::Candidate c = candidateOf<T>(component, boxes.prepared(i), i);
       if (c.enter_lo <= c.exit_hi && c.enter_lo <= reach.outside) {
-        undecided.met = slowly ? decide(i) : c.certain && c.enter_hi <= reach.inside;
+        undecided.met = slowly ? undecided.decide(i) : c.certain && c.enter_hi <= reach.inside;
       }
       return !undecided.met;
     });
@@ -184,9 +191,7 @@ void Scene::Impl::forEachNear(const Segment& segment, double bound, bool shrinks
       c.ended = next < 0.0;
       return next;
     };
-    kernels::Work work;
-    kernels.nearest(view, query, approach, &context, work);
-    countWork(work);
+    kernels.nearest(view, query, approach, &context, work_of_thread);
   }
   if (!ended) {
     forEachOther(tree, for_kernels, boxes.size(), mask, [&](std::size_t i) {

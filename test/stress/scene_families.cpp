@@ -6,7 +6,9 @@
 #include "stress/near_axes.h"
 #include "stress/random.h"
 
+#include <cmath>
 #include <utility>
+#include <variant>
 
 namespace box_query::stress {
 namespace {
@@ -217,6 +219,29 @@ SceneSample turnedShelf(Random& random) {
   return scene;
 }
 
+/// Scenes of any size, and rays whose directions are of any length: all times powers of two, so
+/// that what ties still does.
+SceneSample unusual(Random& random) {
+  SceneSample scene = random.chance(0.5) ? nearTies(random) : lattice(random);
+  const double size = std::ldexp(1.0, random.chance(0.5) ? 0 : random.between(-60, 60));
+  for (Box& any : scene.boxes) {
+    if (auto* aligned = std::get_if<AlignedBox>(&any)) {
+      aligned->min *= size;
+      aligned->max *= size;
+    } else {
+      auto& oriented = std::get<OrientedBox>(any);
+      oriented.center *= size;
+      oriented.half_extents *= size;
+    }
+  }
+  for (Sample& sample : scene.components) {
+    sample.origin *= size;
+    sample.end *= size;
+    sample.direction *= std::ldexp(1.0, random.between(-90, 90));
+  }
+  return scene;
+}
+
 /// Thousands of boxes on a lattice, each with its mirror image: what is entered first, and what is
 /// nearest, is so with others at the far end of the scene, of far higher numbers.
 SceneSample large(Random& random) {
@@ -261,7 +286,8 @@ const SceneFamily kFamilies[] = {
     {"scene_lattice", lattice, 1},      {"scene_duplicates", duplicates, 1},
     {"scene_near_ties", nearTies, 1},   {"scene_far_nest", farNest, 1},
     {"scene_hostile", hostilePairs, 1}, {"scene_turned_shelf", turnedShelf, 1},
-    {"scene_limits", sceneLimits, 1},   {"scene_large", large, 40},
+    {"scene_limits", sceneLimits, 1},   {"scene_unusual", unusual, 1},
+    {"scene_large", large, 40},
 };
 
 }  // namespace

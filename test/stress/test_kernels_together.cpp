@@ -167,14 +167,16 @@ TEST_P(KernelTogetherTest, SegmentsEndWhereTheyDo) {
     const double side = 6.0 * std::cbrt(static_cast<double>(count));
     const std::vector<Box> boxes = scattered(random, count, 6.0);
     std::vector<Ray> parts;
+    std::vector<Ray> numbers;  // start and end of each
     while (parts.size() < 333) {
       Ray part = rayAmong(random, side, boxes);
       part.direction *= random.uniform(0.0, side) / part.direction.norm();
       parts.push_back(part);
+      numbers.push_back({part.origin, part.origin + part.direction});
     }
     const BoxTree tree{SceneBoxes(boxes)};
-    const std::vector<Delivered> any = ask(GetParam()->any_of_segments_together, tree.view(), parts,
-                                           std::vector<double>(parts.size(), kInf));
+    const std::vector<Delivered> any = ask(GetParam()->any_of_segments_together, tree.view(),
+                                           numbers, std::vector<double>(parts.size(), kInf));
     int met = 0;
     int ends_before = 0;
     for (std::size_t i = 0; i < parts.size(); ++i) {

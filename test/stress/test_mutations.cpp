@@ -141,10 +141,10 @@ TEST(Mutations, SegmentsTooShortForTheFrameOfABoxAreNoticed) {
   EXPECT_GT(wrongDistances("stage_limits", 8000), 0U);
 }
 
-TEST(Mutations, ShrunkBoundsOfRaysInFloatAreNoticed) {
-  const Spoilt<double> shift(float_bounds::kShiftError, float_bounds::kShiftError / 64);
-  const Spoilt<double> farther(float_bounds::kFarther, 1.0 + 0x1p-20 / 64);
-  EXPECT_GT(wrongScenes("scene_near_ties", 800), 0U);
+TEST(Mutations, ShrunkBoundsOfUnusualRaysAreNoticed) {
+  const Spoilt<double> shift(float_bounds::kShiftError, 0.0);
+  const Spoilt<double> along(float_bounds::kAlongError, 0.0);
+  EXPECT_GT(wrongScenes("scene_unusual", 1600), 0U);
 }
 
 TEST(Mutations, ShrunkBoundsOfBoxesInFloatAreNoticed) {
@@ -152,14 +152,14 @@ TEST(Mutations, ShrunkBoundsOfBoxesInFloatAreNoticed) {
   EXPECT_GT(wrongScenes("scene_near_ties", 800), 0U);
 }
 
-TEST(Mutations, ShrunkBoundsOfRaysInLanesAreNoticed) {
-  const Spoilt<double> spoilt(float_bounds::kInLanes, 0.0);
+TEST(Mutations, ShrunkBoundsOfRaysInFloatAreNoticed) {
+  const Spoilt<double> spoilt(float_bounds::kApart, 0.0);
   EXPECT_GT(wrongScenes("scene_near_ties", 800), 0U);
 }
 
 TEST(Mutations, PlanesThatAreNotMovedApartForFlatRaysAreNoticed) {
   const Spoilt<double> spoilt(float_bounds::kFlat, 0.0);
-  EXPECT_GT(wrongScenes("scene_lattice", 800), 0U);
+  EXPECT_GT(wrongScenes("scene_unusual", 1600), 0U);
 }
 
 TEST(Mutations, ShrunkBoundsOfDistancesInFloatAreNoticed) {

@@ -43,11 +43,35 @@ static inline void storeLanes(float* p, const Float16& a) {
   store16(p, a);
 }
 
+/// A usual ray (see ray.h) as it is compared with blocks: its parameter is t.
+struct BlockRay {
+  alignas(16) float origin[4];
+  alignas(16) float direction[4];
+  float pad;
+  float end;
+};
+
+/// @return whether the ray is a usual one
+[[gnu::always_inline]] static inline bool prepare(const SceneView& view, const RayQuery& query,
+                                                  BlockRay& ray) {
+  UsualRay usual;
+  if (!isUsual(view, query, usual)) {
+    return false;
+  }
+  store(ray.origin, usual.origin);
+  store(ray.direction, usual.direction);
+  ray.pad = firstLane(sumOf3(magnitude(usual.origin))) *
+                static_cast<float>(bounds::kBlock * bounds::kUp) +
+            static_cast<float>(bounds::kFloatUnderflow);
+  ray.end = endOf(query, usual);
+  return true;
+}
+
 /// The slots from `first` on whose boxes the ray may meet between its begin and its end, a bit
 /// each, as many as there are lanes.
 /// @param near where it enters them, not too late
 template <typename Lanes>
-static inline std::uint32_t meets(const BoxBlock& block, std::uint32_t first, const FloatRay& ray,
+static inline std::uint32_t meets(const BoxBlock& block, std::uint32_t first, const BlockRay& ray,
                                   Lanes& near) {
   const auto slots = [first](const float* all) { return loadLanes<Lanes>(all + first); };
   const Lanes pad = allLanes<Lanes>(ray.pad);
@@ -74,16 +98,16 @@ static inline std::uint32_t meets(const BoxBlock& block, std::uint32_t first, co
     fars[i] = (middle + extent) * inverse;
   }
   // The end of the ray is the last that is known: a root and a quotient.
-  near = larger(larger(nears[0], nears[1]), larger(nears[2], allLanes<Lanes>(ray.begin_s)));
-  const Lanes far =
-      smaller(smaller(smaller(fars[0], fars[1]), fars[2]), allLanes<Lanes>(ray.end_s));
+  near = larger(larger(nears[0], nears[1]), larger(nears[2], allLanes<Lanes>(0.0F)));
+  const Lanes far = smaller(smaller(smaller(fars[0], fars[1]), fars[2]), allLanes<Lanes>(ray.end));
   return notAbove(near, far);
 }
 
-/// All blocks of a list: the boxes that the ray may meet, a bit each.
-/// @param nears where it enters each
+/// All boxes of a list that the ray may meet, a bit each.
+/// @param nears where it enters each, as far as it does
 template <typename Lanes>
-static inline std::uint64_t meetsBlocks(const SceneView& view, const FloatRay& ray, float* nears) {
+[[gnu::always_inline]] static inline std::uint64_t meetsBlocks(const SceneView& view,
+                                                               const BlockRay& ray, float* nears) {
   constexpr std::uint32_t kLanes = sizeof(Lanes) / sizeof(float);
   std::uint64_t met = 0;
   for (std::uint32_t first = 0; first < view.boxes_in_blocks; first += kLanes) {

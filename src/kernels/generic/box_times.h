@@ -10,7 +10,7 @@ struct Times {
 };
 
 /// See bounds::kSlab. Fused operations round less often, so that its derivation covers them.
-static inline Times orientedTimes(const BoxRecord& box, const Ray& ray) {
+static inline Times orientedTimes(const BoxRecord& box, const RayInDouble& ray) {
   const auto column = [&](int j) { return load4(box.column[j]); };
   const auto offset = [&](int j) { return all4(ray.origin[j]) - all4(box.column[j][3]); };
   const Double4 v0 = offset(0);
@@ -34,14 +34,14 @@ static inline Times orientedTimes(const BoxRecord& box, const Ray& ray) {
 }
 
 /// See bounds::kAlignedSlab and enclose(): a plane that the ray lies in, NaN, does not clip.
-static inline Times alignedTimes(const BoxRecord& box, const Ray& ray) {
+static inline Times alignedTimes(const BoxRecord& box, const RayInDouble& ray) {
   constexpr double kC = exact::bounds::kAlignedSlab;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Double4 origin = lanes4(ray.origin);
   const Double4 min = load4(box.column[0]);
   const Double4 max = load4(box.column[1]);
-  const Double4 nears = orIfNan((choose(min, max, ray.signs) - origin) * ray.inverse, -kInfinity);
-  const Double4 fars = orIfNan((choose(max, min, ray.signs) - origin) * ray.inverse, kInfinity);
+  const Double4 nears = orIfNan((choose(min, max, ray.inverse) - origin) * ray.inverse, -kInfinity);
+  const Double4 fars = orIfNan((choose(max, min, ray.inverse) - origin) * ray.inverse, kInfinity);
   double near = largest3(nears, nears).first;
   const double far = smallest3(fars, fars).first;
   near = near > 0.0 ? near : 0.0;
@@ -49,7 +49,7 @@ static inline Times alignedTimes(const BoxRecord& box, const Ray& ray) {
 }
 
 /// Within [0, ray.own_end].
-static inline Times timesOf(const BoxRecord& box, const Ray& ray) {
+static inline Times timesOf(const BoxRecord& box, const RayInDouble& ray) {
   Times t = box.isAligned() ? alignedTimes(box, ray) : orientedTimes(box, ray);
   t.enter_lo = t.enter_lo > 0.0 ? t.enter_lo : 0.0;
   t.enter_hi = t.enter_hi > 0.0 ? t.enter_hi : 0.0;

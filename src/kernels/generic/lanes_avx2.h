@@ -142,12 +142,14 @@ static inline int append(std::uint32_t bits, std::uint32_t base, Float16 near, s
   return middle + __builtin_popcount(bits >> 8);
 }
 
-/// Sixteen rays in lanes: origins relative to a center, and directions, six numbers a ray.
+/// Sixteen rays in lanes: origins relative to a center, and directions, of six numbers a ray:
+/// origin and direction, or start and end.
+template <bool kAreSegments>
 static inline void loadRays(const double* rays, Double4 center, Float16* origin,
                             Float16* direction) {
   FourRays four[4];
   for (int k = 0; k < 4; ++k) {
-    four[k] = loadFourRays(rays + 24 * k, center);
+    four[k] = loadFourRays<kAreSegments>(rays + 24 * k, center);
   }
   for (int i = 0; i < 3; ++i) {
     origin[i] = {_mm256_set_m128(four[1].origin[i], four[0].origin[i]),

@@ -107,12 +107,14 @@ static inline int append(std::uint32_t bits, std::uint32_t base, Float16 near, s
   return append(bits, base, list, count);
 }
 
-/// Sixteen rays in lanes: origins relative to a center, and directions, six numbers a ray.
+/// Sixteen rays in lanes: origins relative to a center, and directions, of six numbers a ray:
+/// origin and direction, or start and end.
+template <bool kAreSegments>
 static inline void loadRays(const double* rays, Double4 center, Float16* origin,
                             Float16* direction) {
   FourRays four[4];
   for (int k = 0; k < 4; ++k) {
-    four[k] = loadFourRays(rays + 24 * k, center);
+    four[k] = loadFourRays<kAreSegments>(rays + 24 * k, center);
   }
   const auto joined = [](__m128 a, __m128 b, __m128 c, __m128 d) -> Float16 {
     const __m512 low = _mm512_castps256_ps512(_mm256_set_m128(b, a));

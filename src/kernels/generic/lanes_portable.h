@@ -148,29 +148,32 @@ static inline float aboveInverseRoot(float x) {
 }
 
 /// Four floats, or what comparing them says: GCC and Clang make of it what the CPU has.
-using Float4 [[gnu::vector_size(16)]] = float;
+using Quad [[gnu::vector_size(16)]] = float;
 using Int4 [[gnu::vector_size(16)]] = std::int32_t;
 
-static inline Float4 quad(float x) {
-  return Float4{x, x, x, x};
+static inline Quad fill(float x) {
+  return Quad{x, x, x, x};
 }
-static inline Int4 bitsOf(Float4 a) {
+static inline Int4 bitsOf(Quad a) {
   return reinterpret_cast<Int4>(a);
 }
-static inline Float4 floatOf(Int4 bits) {
-  return reinterpret_cast<Float4>(bits);
+static inline Quad floatOf(Int4 bits) {
+  return reinterpret_cast<Quad>(bits);
 }
 
 template <int kLanes>
 struct Floats {
-  Float4 v[kLanes / 4];
+  Quad v[kLanes / 4];
 };
 using Float16 = Floats<kSlots>;
 using Float8 = Floats<8>;
+using Float4 = Floats<4>;
 
 template <int kLanes, typename Function>
 static inline Floats<kLanes> each(Function&& f) {
-  if constexpr (kLanes == 8) {
+  if constexpr (kLanes == 4) {
+    return {{f(0)}};
+  } else if constexpr (kLanes == 8) {
     return {{f(0), f(1)}};
   } else {
     return {{f(0), f(1), f(2), f(3)}};
@@ -188,8 +191,46 @@ static inline Float16 load16(const float* p) {
 static inline Float8 load8(const float* p) {
   return load<8>(p);
 }
+static inline Float4 quad(float x) {
+  return {{fill(x)}};
+}
+static inline Float4 loadQuad(const float* p) {
+  return load<4>(p);
+}
+static inline Float4 floatsOf(const Double4& a) {
+  alignas(16) float all[4];
+  storeAsFloats(all, a);
+  return loadQuad(all);
+}
+/// Of the first three lanes, in some order, in each of them.
+static inline Float4 sumOf3(const Float4& a) {
+  const Quad& v = a.v[0];
+  return quad((v[0] + v[1]) + v[2]);
+}
+static inline float largestOf3(const Float4& a) {
+  const Quad& v = a.v[0];
+  const float two = v[0] > v[1] ? v[0] : v[1];
+  return two > v[2] ? two : v[2];
+}
+static inline float smallestOf3(const Float4& a) {
+  const Quad& v = a.v[0];
+  const float two = v[0] < v[1] ? v[0] : v[1];
+  return two < v[2] ? two : v[2];
+}
+static inline float firstLane(const Float4& a) {
+  return a.v[0][0];
+}
+/// Lanes of b where `negative` is, of a elsewhere.
+static inline Float4 choose(const Float4& a, const Float4& b, const Float4& negative) {
+  return {{bitsOf(negative.v[0]) < 0 ? b.v[0] : a.v[0]}};
+}
+/// A bit for every lane in which the sign is set.
+static inline std::uint32_t signsOf(const Float4& a) {
+  const Int4 bits = (bitsOf(a.v[0]) < 0) & Int4{1, 2, 4, 8};
+  return static_cast<std::uint32_t>((bits[0] | bits[1]) | (bits[2] | bits[3]));
+}
 static inline Float16 all16(float x) {
-  return each<kSlots>([&](int) { return quad(x); });
+  return each<kSlots>([&](int) { return fill(x); });
 }
 /// A number for all lanes, as it is best kept for long: by itself, since there are few registers.
 using Kept16 = float;
@@ -197,7 +238,7 @@ static inline Kept16 kept16(float x) {
   return x;
 }
 static inline Float8 all8(float x) {
-  return each<8>([&](int) { return quad(x); });
+  return each<8>([&](int) { return fill(x); });
 }
 template <int kLanes>
 static inline void store(float* p, const Floats<kLanes>& a) {
@@ -233,13 +274,13 @@ static inline Floats<kLanes> operator/(const Floats<kLanes>& a, const Floats<kLa
 }
 template <int kLanes>
 static inline Floats<kLanes> magnitude(const Floats<kLanes>& a) {
-  return each<kLanes>([&](int i) { return floatOf(bitsOf(a.v[i]) & ~bitsOf(quad(-0.0F))); });
+  return each<kLanes>([&](int i) { return floatOf(bitsOf(a.v[i]) & ~bitsOf(fill(-0.0F))); });
 }
 /// a times -1 where b is negative.
 template <int kLanes>
 static inline Floats<kLanes> withSignOf(const Floats<kLanes>& a, const Floats<kLanes>& b) {
   return each<kLanes>(
-      [&](int i) { return floatOf(bitsOf(a.v[i]) ^ (bitsOf(b.v[i]) & bitsOf(quad(-0.0F)))); });
+      [&](int i) { return floatOf(bitsOf(a.v[i]) ^ (bitsOf(b.v[i]) & bitsOf(fill(-0.0F)))); });
 }
 /// a / b; an estimate would do.
 static inline Float16 roughQuotient(const Float16& a, const Float16& b) {
@@ -248,8 +289,8 @@ static inline Float16 roughQuotient(const Float16& a, const Float16& b) {
 /// a / sqrt(b) by Newton's method from half the exponent, off by less than 8u of it.
 static inline Float16 overRoot(const Float16& a, const Float16& b) {
   return each<kSlots>([&](int i) {
-    const Float4 half_b = b.v[i] * 0.5F;
-    Float4 r = floatOf(0x5f375a86 - (bitsOf(b.v[i]) >> 1));
+    const Quad half_b = b.v[i] * 0.5F;
+    Quad r = floatOf(0x5f375a86 - (bitsOf(b.v[i]) >> 1));
     for (int step = 0; step < 3; ++step) {
       r = r * (1.5F - half_b * r * r);
     }
@@ -276,12 +317,12 @@ static inline Floats<kLanes> smaller(const Floats<kLanes>& a, const Floats<kLane
 /// The smallest lane, where none is NaN.
 static inline float smallestLane(const Float16& a) {
   const auto lesser = [](auto x, auto y) { return x < y ? x : y; };
-  const Float4 four = lesser(lesser(a.v[0], a.v[1]), lesser(a.v[2], a.v[3]));
+  const Quad four = lesser(lesser(a.v[0], a.v[1]), lesser(a.v[2], a.v[3]));
   return lesser(lesser(four[0], four[1]), lesser(four[2], four[3]));
 }
 /// a but for one lane, which is +inf.
 static inline Float16 withInfinity(const Float16& a, int lane) {
-  const Float4 infinity = quad(std::numeric_limits<float>::infinity());
+  const Quad infinity = fill(std::numeric_limits<float>::infinity());
   return each<kSlots>([&](int i) {
     const Int4 at = Int4{0, 1, 2, 3} + 4 * i;
     return at == lane ? infinity : a.v[i];
@@ -317,7 +358,9 @@ static inline int append(std::uint32_t bits, std::uint32_t base, const Float16& 
   return count;
 }
 
-/// Sixteen rays in lanes: origins relative to a center, and directions, six numbers a ray.
+/// Sixteen rays in lanes: origins relative to a center, and directions, of six numbers a ray:
+/// origin and direction, or start and end.
+template <bool kAreSegments>
 static inline void loadRays(const double* rays, const Double4& center, Float16* origin,
                             Float16* direction) {
   for (int i = 0; i < 3; ++i) {
@@ -325,7 +368,7 @@ static inline void loadRays(const double* rays, const Double4& center, Float16* 
     alignas(64) float d[kSlots];
     for (int k = 0; k < kSlots; ++k) {
       o[k] = static_cast<float>(rays[6 * k + i] - center.v[i]);
-      d[k] = static_cast<float>(rays[6 * k + 3 + i]);
+      d[k] = static_cast<float>(rays[6 * k + 3 + i] - (kAreSegments ? rays[6 * k + i] : 0.0));
     }
     origin[i] = load16(o);
     direction[i] = load16(d);

@@ -154,6 +154,74 @@ static inline float aboveInverseRoot(float x) {
   return _mm_cvtss_f32(_mm_rsqrt_ss(_mm_set_ss(x))) * (1.0F + 0x1p-10F);
 }
 
+struct Float4 {
+  __m128 v;
+};
+
+static inline Float4 quad(float x) {
+  return {_mm_set1_ps(x)};
+}
+static inline Float4 loadQuad(const float* p) {
+  return {_mm_load_ps(p)};
+}
+static inline void store(float* p, Float4 a) {
+  _mm_store_ps(p, a.v);
+}
+static inline Float4 floatsOf(Double4 a) {
+  return {_mm256_cvtpd_ps(a.v)};
+}
+static inline Float4 multiplyAdd(Float4 a, Float4 b, Float4 c) {
+  return {_mm_fmadd_ps(a.v, b.v, c.v)};
+}
+static inline Float4 operator+(Float4 a, Float4 b) {
+  return {_mm_add_ps(a.v, b.v)};
+}
+static inline Float4 operator-(Float4 a, Float4 b) {
+  return {_mm_sub_ps(a.v, b.v)};
+}
+static inline Float4 operator*(Float4 a, Float4 b) {
+  return {_mm_mul_ps(a.v, b.v)};
+}
+static inline Float4 operator/(Float4 a, Float4 b) {
+  return {_mm_div_ps(a.v, b.v)};
+}
+static inline Float4 magnitude(Float4 a) {
+  return {_mm_andnot_ps(_mm_set1_ps(-0.0F), a.v)};
+}
+static inline Float4 withSignOf(Float4 a, Float4 b) {
+  return {_mm_xor_ps(a.v, _mm_and_ps(b.v, _mm_set1_ps(-0.0F)))};
+}
+static inline Float4 larger(Float4 a, Float4 b) {
+  return {_mm_max_ps(a.v, b.v)};
+}
+/// Lanes of b where `negative` is, of a elsewhere.
+static inline Float4 choose(Float4 a, Float4 b, Float4 negative) {
+  return {_mm_blendv_ps(a.v, b.v, negative.v)};
+}
+/// Of the first three lanes, in some order, in each of them.
+static inline Float4 sumOf3(Float4 a) {
+  const __m128 turned = _mm_permute_ps(a.v, _MM_SHUFFLE(3, 0, 2, 1));
+  return {_mm_add_ps(_mm_add_ps(a.v, turned), _mm_permute_ps(a.v, _MM_SHUFFLE(3, 1, 0, 2)))};
+}
+static inline float largestOf3(Float4 a) {
+  return _mm_cvtss_f32(
+      _mm_max_ss(_mm_max_ss(a.v, _mm_movehdup_ps(a.v)), _mm_unpackhi_ps(a.v, a.v)));
+}
+static inline float smallestOf3(Float4 a) {
+  return _mm_cvtss_f32(
+      _mm_min_ss(_mm_min_ss(a.v, _mm_movehdup_ps(a.v)), _mm_unpackhi_ps(a.v, a.v)));
+}
+static inline float firstLane(Float4 a) {
+  return _mm_cvtss_f32(a.v);
+}
+/// A bit for every lane in which a <= b, and in which the sign is set.
+static inline std::uint32_t notAbove(Float4 a, Float4 b) {
+  return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmp_ps(a.v, b.v, _CMP_LE_OQ)));
+}
+static inline std::uint32_t signsOf(Float4 a) {
+  return static_cast<std::uint32_t>(_mm_movemask_ps(a.v));
+}
+
 struct Float8 {
   __m256 v;
 };
@@ -212,20 +280,25 @@ static inline float smallestLane(Float8 a) {
   return _mm_cvtss_f32(_mm_min_ss(m, _mm_movehdup_ps(m)));
 }
 
-/// Four rays in lanes: origins relative to a center, and directions, six numbers a ray.
+/// Four rays in lanes: origins relative to a center, and directions, of six numbers a ray: origin
+/// and direction, or start and end.
 struct FourRays {
   __m128 origin[3];
   __m128 direction[3];
 };
 
+template <bool kAreSegments>
 static inline FourRays loadFourRays(const double* rays, Double4 center) {
-  // Of the center (x, y, z, 0), what is to be taken from (z, and the direction).
-  const __m256d z = _mm256_permute4x64_pd(center.v, _MM_SHUFFLE(3, 3, 3, 2));
   __m128 head[4];
   __m128 tail[4];
   for (int k = 0; k < 4; ++k) {
-    head[k] = _mm256_cvtpd_ps(_mm256_sub_pd(_mm256_loadu_pd(rays + 6 * k), center.v));
-    tail[k] = _mm256_cvtpd_ps(_mm256_sub_pd(_mm256_loadu_pd(rays + 6 * k + 2), z));
+    const __m256d first = _mm256_loadu_pd(rays + 6 * k);
+    __m256d last = _mm256_loadu_pd(rays + 6 * k + 2);
+    if constexpr (kAreSegments) {
+      last = _mm256_sub_pd(last, _mm256_permute4x64_pd(first, _MM_SHUFFLE(2, 1, 0, 0)));
+    }
+    head[k] = _mm256_cvtpd_ps(_mm256_sub_pd(first, center.v));
+    tail[k] = _mm256_cvtpd_ps(last);
   }
   _MM_TRANSPOSE4_PS(head[0], head[1], head[2], head[3]);
   _MM_TRANSPOSE4_PS(tail[0], tail[1], tail[2], tail[3]);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Sixteen rays in lanes, against the boxes of a short list one by one.
 
-template <typename Ask>
-class ListSearch : LaneSearch<Ask> {
-  using Base = LaneSearch<Ask>;
+template <typename What>
+class ListSearch : LaneSearch<What> {
+  using Base = LaneSearch<What>;
   using Base::begun_;
   using Base::lanes_;
   using Base::to_;
@@ -79,9 +79,10 @@ class ListSearch : LaneSearch<Ask> {
   }
 };
 
-template <typename Ask>
-static void searchList(const SceneView& view, const RayQueries& queries, const Delivery& to) {
-  ListSearch<Ask> search(view, queries, to);
+template <typename What>
+static void searchListTogether(const SceneView& view, const RayQueries& queries,
+                               const Delivery& to) {
+  ListSearch<What> search(view, queries, to);
   for (std::size_t first = 0; first < queries.count; first += kSlots) {
     const std::size_t left = queries.count - first;
     search.run(first, left < kSlots ? static_cast<int>(left) : kSlots);

@@ -1,44 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A ray in float, against sixteen bounds at once.
+// A ray in float, against sixteen bounds at once. Most rays are done with it: only for those that
+// may meet a box is anything prepared in double.
 //
-// Its parameter is s = t |d|_max, so that along the dominant axis it is metres, and r_i = |d|_max /
-// d_i is at least 1. With o relative to the center of the scene, and u = 2^-24, the planes of axis
-// i are at s = plane r_i - o r_i. Computed as multiplyAdd(plane, r_i, shift), r_i off by 1.1u, the
-// shift by 1.1u |o r_i|, two roundings: since |plane r_i| <= |s| + |o r_i|, off by at most
-// 4.2u |s| + 5.3u |o r_i|. The second part is in the shifts (kShiftError); the first one, on both
-// sides, in kFarther.
-//
-// An axis along which the ray hardly goes, |d_i| < 2^-40 |d|_max, has r_i = +-2^40 and moves by
-// less than s_end / |r_i|: its planes are moved apart by twice s_end (where the ray is between
-// them, or reaches one, they clip nothing before s_end).
+// A ray is o + t d, o relative to the center of the scene, d raised to +-kFlattest in each
+// coordinate. With u = 2^-24, S = |o|_1 + A, A the largest |p|_1 of a point p in the bounds of the
+// scene: where the ray is in bounds, |t d|_2 <= |o|_2 + |p|_2 <= S. Computed as
+// multiplyAdd(plane, r, -o r), r = 1 / d, in metres along the axis
+// - r is off by 2u, of d and of the quotient, the product with a plane by u: 3u S,
+// - -o r by u of o, 2u of r, u of the product and u of what is added to o below: 5u S,
+// - the sum by u S, and the ray by t kFlattest <= 2^-39 S where d is raised.
+// Together 9u S and what is left of second order: planes are moved apart by kApart S. No product
+// overflows: |plane| and |o| < 2^61, r <= 2^60.
+
+constexpr float kFlattest = 0x1p-60F;
+/// Of a usual ray, each coordinate of the origin is at most so far from the center,
+constexpr float kUsualDistance = 0x1p40F;
+/// and the largest one of the direction at most so large, its inverse too.
+constexpr float kUsualLength = 0x1p20F;
 
 enum class Outcome { kNotTaken, kMiss, kReady };
 
-constexpr double kSteepest = 0x1p40;
-/// Up to it, and from its inverse on, a float holds the square of a direction.
-constexpr double kLongestInFloat = 0x1p60;
-
-/// Long rays go down a tree a stretch at a time, so that what lies behind the first box is not
-/// compared: at first so far [m], then twice as far each time. (Measured; shorter ones spare fewer
-/// nodes than beginning anew costs.)
-static inline float firstStretch(const SceneView& view) {
-  return 3.0F * static_cast<float>(view.mean_free_path);
-}
-
-/// (Not kept in sixteen lanes: what was just written is read back sooner as single floats.)
+/// A ray as it is compared with bounds. (Not kept in sixteen lanes: what was just written is read
+/// back sooner as single floats.)
 struct FloatRay {
-  int near_side[3];
+  std::uint32_t goes_down;  ///< a bit for each axis
   alignas(16) float inverse[4];
   alignas(16) float near_shift[4];
   alignas(16) float far_shift[4];
-  /// Instead of these, where the boxes are in blocks: see blocks.h.
-  bool for_blocks;
-  alignas(16) float origin[4];
-  alignas(16) float direction[4];
-  float pad;
   float begin_s;
   float end_s;
-  double scale;  ///< |d|_max: s = t * scale; 1 for blocks
+  /// It goes down a tree a stretch at a time, so that what lies behind the first box is not
+  /// compared: at first so far, then twice as far each time. (Measured; shorter ones spare fewer
+  /// nodes than beginning anew costs.)
+  float stretch_s;
+  double scale;  ///< s = t * scale; 1 of a usual ray
 
   void setRange(float from, float to) {
     begin_s = from;
@@ -50,159 +45,80 @@ struct FloatRay {
   }
 };
 
-/// A ray as the boxes of a scene are compared with it.
-struct Ray {
-  FloatRay in_float;
-  const double* origin;
-  const double* direction;
-  Double4 inverse;  ///< of the direction, infinite where that is 0
-  Double4 signs;    ///< of the direction
-  double own_end;   ///< of the component: 1 of a segment, +inf of a ray
-  double t_end;     ///< a box that is certainly entered beyond it is none
-  double t_inside;  ///< a box that is certainly entered before it is certainly in range
+/// Stretches in metres.
+static inline float firstStretch(const SceneView& view) {
+  return 3.0F * static_cast<float>(view.mean_free_path);
+}
+
+/// The numbers of a usual ray.
+struct UsualRay {
+  Float4 origin;  ///< relative to the center of the scene
+  Float4 direction;
+  float inverse_length;  ///< not less than that of the direction
 };
 
-/// Lanes whose sign is set where the number is 0 or of a size from `least` to `most`.
-static inline Double4 isBetween(Double4 size, double least, double most) {
-  return isNotBelow(all4(most), size) &
-         (isNotBelow(size, all4(least)) | isNotBelow(all4(0.0), size));
+static inline Double4 directionOf(const RayQuery& query) {
+  const Double4 direction = lanes4(query.direction);
+  return query.is_segment ? direction - lanes4(query.origin) : direction;
 }
 
-/// What a ray that is compared with blocks needs.
-static inline void setForBlocks(Double4 relative, const RayQuery& query, double t_end,
-                                FloatRay& f) {
-  const Double4 reach = magnitude(relative);
-  const double size = (firstLane(reach) + firstLane(turned(reach))) + firstLane(turnedTwice(reach));
-  f.scale = 1.0;
-  f.pad = static_cast<float>(size * (bounds::kBlock * bounds::kUp) + bounds::kFloatUnderflow);
-  storeAsFloats(f.origin, relative);
-  storeAsFloats(f.direction, lanes4(query.direction));
-  f.setRange(0.0F, f.roundedUp(t_end));
+/// @return whether the ray is a usual one
+[[gnu::always_inline]] static inline bool isUsual(const SceneView& view, const RayQuery& query,
+                                                  UsualRay& ray) {
+  ray.origin = floatsOf(lanes4(query.origin) - load4(view.center));
+  ray.direction = floatsOf(directionOf(query));
+  const Float4 size = magnitude(ray.direction);
+  ray.inverse_length = aboveInverseRoot(firstLane(sumOf3(ray.direction * ray.direction)));
+  return (notAbove(magnitude(ray.origin), quad(kUsualDistance)) &
+          notAbove(size, quad(kUsualLength)) & 7U) == 7U &&
+         (notAbove(quad(1.0F / kUsualLength), size) & 7U) != 0;
 }
 
-/// What a ray is prepared from.
-struct RayParts {
-  Double4 origin;
-  Double4 direction;
-  Double4 size;      ///< of the direction
-  Double4 relative;  ///< the origin, to the center of the scene
-  Double4 scale;     ///< the largest size, in the first three lanes
-};
-
-static inline RayParts partsOf(const SceneView& view, const RayQuery& query) {
-  RayParts p;
-  p.origin = lanes4(query.origin);
-  p.direction = lanes4(query.direction);
-  p.size = magnitude(p.direction);
-  p.relative = p.origin - load4(view.center);
-  p.scale = larger(larger(p.size, turned(p.size)), turnedTwice(p.size));
-  return p;
+/// The parameter at which it ends, rounded up.
+[[gnu::always_inline]] static inline float endOf(const RayQuery& query, const UsualRay& ray) {
+  const float end = static_cast<float>(query.max_range) * ray.inverse_length +
+                    static_cast<float>(bounds::kFloatUnderflow);
+  return query.is_segment && end > 1.0F ? 1.0F : end;
 }
 
-static inline double squareOf(const double* d) {
-  return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+/// Clips a ray to the bounds of the scene.
+/// @return whether any of it is left
+static inline bool clipToScene(const SceneView& view, FloatRay& f) {
+  const Float4 inverse = loadQuad(f.inverse);
+  const Float4 lo = loadQuad(view.around[0]);
+  const Float4 hi = loadQuad(view.around[1]);
+  const float begin =
+      largestOf3(multiplyAdd(choose(lo, hi, inverse), inverse, loadQuad(f.near_shift)));
+  const float end =
+      smallestOf3(multiplyAdd(choose(hi, lo, inverse), inverse, loadQuad(f.far_shift)));
+  f.setRange(begin > f.begin_s ? begin : f.begin_s, end < f.end_s ? end : f.end_s);
+  return f.begin_s <= f.end_s;
 }
 
-/// Not less than the parameter of the end of a ray, but sooner there than that: a root and a
-/// quotient.
-static inline double roughEnd(const RayQuery& query, double scale, const Ray& ray) {
-  const bool is_limited = query.max_range < std::numeric_limits<double>::infinity();
-  return is_limited && scale <= kLongestInFloat && scale >= 1.0 / kLongestInFloat
-             ? query.max_range * aboveInverseRoot(static_cast<float>(squareOf(query.direction)))
-             : ray.t_end;
-}
-
-/// Prepares what is compared in double. (Inlined, where it is known whether rays have ends.)
-/// @return whether the ray is taken
-[[gnu::always_inline]] static inline bool prepareInDouble(const SceneView& view,
-                                                          const RayQuery& query, const RayParts& p,
-                                                          Ray& ray) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  ray.t_inside = 0.0;
-  const Double4 is_fit =
-      isBetween(magnitude(p.origin), exact::bounds::kTiniest, exact::bounds::kLargest) &
-      isBetween(p.size, exact::bounds::kSmallestComponent, exact::bounds::kLargest) &
-      isNotBelow(all4(kFarthestOrigin), magnitude(p.relative)) &
-      isNotBelow(p.scale, all4(exact::bounds::kSmallestDirection));
-  if (signs3(is_fit) != 7U) {
-    return false;
-  }
-  ray.origin = query.origin;
-  ray.direction = query.direction;
-  ray.signs = p.direction;
-  if (view.has_aligned) {
-    ray.inverse = all4(1.0) / p.direction;
-  }
-  ray.own_end = query.has_end ? 1.0 : kInfinity;
-  ray.t_end = ray.own_end;
-  ray.t_inside = ray.own_end;
-  if (query.max_range < kInfinity) {
-    const double t = query.max_range / std::sqrt(squareOf(query.direction));
-    ray.t_end = t * exact::bounds::kInflate + exact::bounds::kUnderflow;
-    // 1 - x is below 1 / (1 + x), and sooner there.
-    ray.t_inside = t * (2.0 - exact::bounds::kInflate) - exact::bounds::kUnderflow;
-  }
-  return true;
-}
-
-/// Prepares a ray for the boxes of a scene.
+/// Prepares a usual ray for bounds.
 /// @param in_stretches whether it goes down the tree a stretch at a time until its end
-[[gnu::always_inline]] static inline Outcome prepare(const SceneView& view, const RayQuery& query,
-                                                     Ray& ray, bool in_stretches) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const RayParts parts = partsOf(view, query);
-  const auto& [origin, direction, size, relative, scale] = parts;
-  FloatRay& f = ray.in_float;
-  f.scale = firstLane(scale);
-  if (!prepareInDouble(view, query, parts, ray)) {
+/// @return kNotTaken if it is not a usual one
+[[gnu::always_inline]] static inline Outcome prepareUsual(const SceneView& view,
+                                                          const RayQuery& query, FloatRay& f,
+                                                          bool in_stretches) {
+  UsualRay ray;
+  if (!isUsual(view, query, ray)) {
     return Outcome::kNotTaken;
   }
-  const double rough_end = roughEnd(query, f.scale, ray);
-  f.for_blocks = view.boxes_in_blocks > 0 && f.scale <= kLongestInBlocks &&
-                 f.scale >= 1.0 / kLongestInBlocks &&
-                 notBelow3(all4(kFarthestInBlocks), magnitude(relative)) == 7U;
-  if (f.for_blocks) {
-    setForBlocks(relative, query, rough_end, f);
-    return Outcome::kReady;
-  }
-
-  const Double4 is_flat = isNotBelow(scale, all4(kSteepest) * size);
-  const Double4 inverse =
-      choose(scale / direction, withSignOf(all4(kSteepest), direction), is_flat);
-  const Double4 shift = relative * inverse;
-  Double4 apart = fused(magnitude(shift), all4(bounds::kShiftError),
-                        all4(bounds::kFloatUnderflow) * magnitude(inverse));
-  double begin = 0.0;
-  double end = rough_end * f.scale * bounds::kUp;
-  const bool has_stretches = in_stretches && end > firstStretch(view);
-  if (has_stretches || signs3(is_flat) != 0) {
-    // Clipped to the bounds of the scene, for as few stretches as can be, and so that the end is
-    // finite where planes are moved by it.
-    const Double4 lo = load4(view.around[0]);
-    const Double4 hi = load4(view.around[1]);
-    const Double4 near = (choose(lo, hi, direction) - relative) * inverse;
-    const Double4 far = (choose(hi, lo, direction) - relative) * inverse;
-    const Double4 nearest = (near - apart) - all4(bounds::kShiftError) * magnitude(near);
-    const Double4 farthest = (far + apart) + all4(bounds::kShiftError) * magnitude(far);
-    const double first = largest3(choose(nearest, all4(-kInfinity), is_flat), nearest).first;
-    const double last = smallest3(choose(farthest, all4(kInfinity), is_flat), farthest).first;
-    begin = first > 0.0 ? first : 0.0;
-    end = last < end ? last : end;
-    if (begin > end) {
-      return Outcome::kMiss;
-    }
-    apart = apart + choose(all4(0.0), all4(bounds::kFlat * end), is_flat);
-  }
-  storeAsFloats(f.inverse, inverse);
-  storeAsFloats(f.near_shift, negated(shift) - apart);
-  storeAsFloats(f.far_shift, apart - shift);
-  const unsigned goes_down = signs3(direction);
-  for (int i = 0; i < 3; ++i) {
-    f.near_side[i] = static_cast<int>((goes_down >> i) & 1U);
-  }
-  f.setRange(static_cast<float>(begin * (1.0 - bounds::kShiftError)),
-             static_cast<float>(end * bounds::kUp + bounds::kFloatUnderflow));
-  return Outcome::kReady;
+  const auto pad = static_cast<float>(bounds::kApart * bounds::kUp);
+  const Float4 apart = withSignOf(
+      multiplyAdd(sumOf3(magnitude(ray.origin)), quad(pad), quad(view.apart)), ray.direction);
+  const Float4 steep = larger(magnitude(ray.direction), quad(kFlattest));
+  const Float4 inverse = quad(1.0F) / withSignOf(steep, ray.direction);
+  store(f.inverse, inverse);
+  store(f.near_shift, (quad(-0.0F) - (ray.origin + apart)) * inverse);
+  store(f.far_shift, (apart - ray.origin) * inverse);
+  f.goes_down = signsOf(ray.direction);
+  f.scale = 1.0;
+  f.setRange(0.0F, endOf(query, ray));
+  f.stretch_s = firstStretch(view) * smallestOf3(magnitude(inverse));
+  return in_stretches && f.end_s > f.stretch_s && !clipToScene(view, f) ? Outcome::kMiss
+                                                                        : Outcome::kReady;
 }
 
 /// A ray in float as it is compared with many bounds: read once, since what is written meanwhile
@@ -210,7 +126,8 @@ static inline double roughEnd(const RayQuery& query, double scale, const Ray& ra
 struct RayLanes {
   // (Without a loop, which would keep GCC from taking the arrays apart.)
   [[gnu::always_inline]] explicit RayLanes(const FloatRay& ray)
-      : near_plane{ray.near_side[0] * 3, ray.near_side[1] * 3 + 1, ray.near_side[2] * 3 + 2},
+      : near_plane{(ray.goes_down & 1) * 3, (ray.goes_down >> 1 & 1) * 3 + 1,
+                   (ray.goes_down >> 2 & 1) * 3 + 2},
         far_plane{3 - near_plane[0], 5 - near_plane[1], 7 - near_plane[2]},
         inverse{kept16(ray.inverse[0]), kept16(ray.inverse[1]), kept16(ray.inverse[2])},
         near_shift{kept16(ray.near_shift[0]), kept16(ray.near_shift[1]), kept16(ray.near_shift[2])},
@@ -226,7 +143,6 @@ struct RayLanes {
   Kept16 begin;
   Kept16 end;
 };
-
 /// The slots whose bounds the ray may meet between its begin and its end, a bit each. (Inlined, so
 /// that the ray stays in registers.)
 /// @param near where it enters them, too early by at most what the floats cannot tell
@@ -244,5 +160,5 @@ struct RayLanes {
   near = larger(larger(nearPlane(0), nearPlane(1)), larger(nearPlane(2), all16(ray.begin)));
   const Float16 far =
       smaller(smaller(farPlane(0), farPlane(1)), smaller(farPlane(2), all16(ray.end)));
-  return notAbove(near, far * all16(static_cast<float>(bounds::kFarther)));
+  return notAbove(near, far);
 }

@@ -1,70 +1,136 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The queries of kernels.h.
+// The queries of kernels.h, as visits of what a ray may meet: begin() comes before the first
+// record, then one record after the other until there is no more or one of them ends the query.
 
-/// Compares the ray with a record.
-/// @return false if its box is not looked at, or certainly not entered at a parameter up to `bound`
-[[gnu::always_inline]] static inline bool mayEnter(const SceneView& view, const RayQuery& query,
-                                                   const Ray& ray, double bound,
-                                                   std::uint32_t record, Work& work,
-                                                   Candidate& candidate) {
-  const std::uint32_t box = view.box_of_record[record];
-  if (query.mask != nullptr && ((query.mask[box / 64] >> (box % 64)) & 1U) == 0) {
-    return false;
-  }
-  ++work.boxes;
-  work.turned_boxes += view.records[record].isAligned() ? 0 : 1;
-  const Times t = timesOf(view.records[record], ray);
-  candidate = {box, t.enter_hi <= t.exit_lo, t.enter_lo, t.enter_hi, t.exit_hi};
-  return t.enter_lo <= t.exit_hi && t.enter_lo <= bound;
-}
+/// What all of them have in common.
+class RayVisit {
+ public:
+  RayVisit() = default;
+  RayVisit(const SceneView& view, const RayQuery& query, Found& into, FloatRay& ray)
+      : found(&into), view_(&view), query_(&query), in_float_(&ray) {}
 
-/// A search for the closest box, as it goes from record to record.
-struct ClosestVisit {
-  const SceneView* view;
-  const RayQuery* query;
-  Ray* ray;
-  Found* found;
-  Take take;
-  void* context;
-  double bound;     ///< a box that is entered later is not the first
-  float bound_s;    ///< in s, rounded up
-  double earliest;  ///< smallest enter_lo of the candidates
-
-  float end() const { return bound_s; }
-
-  bool operator()(std::uint32_t record) {
-    Candidate c;
-    if (!mayEnter(*view, *query, *ray, bound, record, found->work, c)) {
-      return true;
+  /// Prepares what is compared in double, unless it is.
+  /// @return whether the ray is taken
+  [[gnu::always_inline]] bool begin() {
+    if (!is_begun_) {
+      is_begun_ = true;
+      is_taken_ = prepare(*query_, view_->has_aligned, ray_);
+      found->t_inside = ray_.t_inside;
     }
-    if (c.certain && c.enter_hi < bound) {
-      shorten(c.enter_hi);
-      if (c.enter_hi < earliest) {
-        found->count = 0;  // all others are later
-        earliest = c.enter_lo;
+    return is_taken_;
+  }
+
+  Found* found = nullptr;
+
+ protected:
+  /// Compares the ray with a record.
+  /// @return false if its box is not looked at, or certainly not entered at a parameter up to
+  /// `bound`
+  [[gnu::always_inline]] bool mayEnter(std::uint32_t record, double bound,
+                                       Candidate& candidate) const {
+    const std::uint32_t box = view_->box_of_record[record];
+    if (query_->mask != nullptr && ((query_->mask[box / 64] >> (box % 64)) & 1U) == 0) {
+      return false;
+    }
+    ++found->work->boxes;
+    found->work->turned_boxes += view_->records[record].isAligned() ? 0 : 1;
+    const Times t = timesOf(view_->records[record], ray_);
+    candidate = {box, t.enter_hi <= t.exit_lo, t.enter_lo, t.enter_hi, t.exit_hi};
+    return t.enter_lo <= t.exit_hi && t.enter_lo <= bound;
+  }
+
+  bool isFull() const { return found->count == Found::kCapacity; }
+  void add(const Candidate& candidate) { found->candidates[found->count++] = candidate; }
+
+  /// Adds a candidate to those that the caller decides.
+  /// @return false if the caller ends the query
+  bool leaveToCaller(const Candidate& candidate) {
+    if (isFull()) {
+      const bool ends = found->take(found->context, *found) < 0.0;
+      found->count = 0;
+      is_left_ = true;
+      if (ends) {
+        return false;
       }
     }
-    if (found->count == Found::kCapacity) {
-      makeRoom();
-    }
-    earliest = earliest < c.enter_lo ? earliest : c.enter_lo;
-    found->candidates[found->count++] = c;
+    add(candidate);
     return true;
   }
 
+  Answer answerOfFound() const {
+    if (is_begun_ && !is_taken_) {
+      return Answer::kNotTaken;
+    }
+    return found->count > 0 || is_left_ ? Answer::kUndecided : Answer::kNone;
+  }
+
+  const SceneView* view_ = nullptr;
+  const RayQuery* query_ = nullptr;
+  FloatRay* in_float_ = nullptr;
+  RayInDouble ray_;
+  bool is_begun_ = false;
+  bool is_taken_ = false;
+  bool is_left_ = false;  ///< candidates were taken
+};
+
+/// A search for the closest box.
+class ClosestVisit : public RayVisit {
+ public:
+  ClosestVisit() = default;
+  ClosestVisit(const SceneView& view, const RayQuery& query, Found& into, FloatRay& ray)
+      : RayVisit(view, query, into, ray), end_s_(ray.end_s) {}
+
+  /// What lies beyond it [s] is not the first.
+  float end() const { return end_s_; }
+
+  [[gnu::always_inline]] bool begin() {
+    if (!is_begun_ && RayVisit::begin()) {
+      shorten(ray_.t_end);
+    }
+    return is_taken_;
+  }
+
+  [[gnu::always_inline]] bool operator()(std::uint32_t record) {
+    Candidate c;
+    if (!mayEnter(record, bound_, c)) {
+      return true;
+    }
+    if (c.certain && c.enter_hi < bound_) {
+      shorten(c.enter_hi);
+      if (c.enter_hi < earliest_) {
+        found->count = 0;  // all others are later
+        earliest_ = c.enter_lo;
+      }
+    }
+    if (isFull()) {
+      makeRoom();
+    }
+    earliest_ = earliest_ < c.enter_lo ? earliest_ : c.enter_lo;
+    add(c);
+    return true;
+  }
+
+  Answer answer() {
+    dropLater();
+    return answerOfFound();
+  }
+
+ private:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
   void shorten(double t) {
-    bound = t;
-    FloatRay& f = ray->in_float;
-    bound_s = f.roundedUp(t);
-    if (bound_s < f.end_s) {
-      f.end_s = bound_s;
+    bound_ = t;
+    const float s = in_float_->roundedUp(t);
+    end_s_ = s < end_s_ ? s : end_s_;
+    if (s < in_float_->end_s) {
+      in_float_->end_s = s;
     }
   }
 
-  void dropLater() const {
+  void dropLater() {
     int kept = 0;
     for (int i = 0; i < found->count; ++i) {
-      if (found->candidates[i].enter_lo <= bound) {
+      if (found->candidates[i].enter_lo <= bound_) {
         if (kept != i) {
           found->candidates[kept] = found->candidates[i];
         }
@@ -77,131 +143,110 @@ struct ClosestVisit {
   void makeRoom() {
     dropLater();
     if (found->count > Found::kCapacity / 2) {
-      const double known = take(context, *found);
+      const double known = found->take(found->context, *found);
       found->count = 0;
-      earliest = std::numeric_limits<double>::infinity();
-      if (known < bound) {
+      is_left_ = true;
+      earliest_ = kInfinity;
+      if (known < bound_) {
         shorten(known);
       }
     }
   }
+
+  double bound_ = kInfinity;     ///< a box that is entered later is not the first
+  double earliest_ = kInfinity;  ///< smallest enter_lo of the candidates
+  float end_s_ = 0.0F;           ///< the bound, rounded up
 };
 
-/// Prepares a query. (Inlined: a tenth of the time of a ray among few boxes.)
-/// @return kReady if there is anything to search
-[[gnu::always_inline]] static inline Outcome begin(const SceneView& view, const RayQuery& query,
-                                                   Found& found, Ray& ray, bool in_stretches) {
-  found.count = 0;
-  found.work = Work();
-  const Outcome outcome = prepare(view, query, ray, in_stretches);
-  found.t_inside = ray.t_inside;
-  return outcome == Outcome::kReady && view.depth == 0 ? Outcome::kMiss : outcome;
-}
+/// A search for any box.
+class AnyVisit : public RayVisit {
+ public:
+  AnyVisit() = default;
+  AnyVisit(const SceneView& view, const RayQuery& query, Found& into, FloatRay& ray)
+      : RayVisit(view, query, into, ray), end_s_(ray.end_s) {}
 
-static inline ClosestVisit closestVisit(const SceneView& view, const RayQuery& query, Ray& ray,
-                                        Found& found, Take take, void* context) {
-  return {&view,
-          &query,
-          &ray,
-          &found,
-          take,
-          context,
-          ray.t_end,
-          ray.in_float.end_s,
-          std::numeric_limits<double>::infinity()};
-}
+  float end() const { return end_s_; }
 
-static bool closest(const SceneView& view, const RayQuery& query, Found& found, Take take,
-                    void* context) {
-  Ray ray;
-  const Outcome outcome = begin(view, query, found, ray, view.depth > 2);
-  if (outcome == Outcome::kReady) {
-    ClosestVisit visit = closestVisit(view, query, ray, found, take, context);
-    descendInStretches(view, ray.in_float, found.work, visit);
-    visit.dropLater();
-  }
-  return outcome != Outcome::kNotTaken;
-}
-
-/// Adds a candidate to those that the caller decides.
-/// @return false if the caller ends the query
-static inline bool leaveToCaller(Found& found, const Candidate& candidate, Take take,
-                                 void* context) {
-  if (found.count == Found::kCapacity) {
-    const bool ends = take(context, found) < 0.0;
-    found.count = 0;
-    if (ends) {
-      return false;
-    }
-  }
-  found.candidates[found.count++] = candidate;
-  return true;
-}
-
-struct AnyVisit {
-  const SceneView* view;
-  const RayQuery* query;
-  const Ray* ray;
-  Found* found;
-  Take take;
-  void* context;
-  float end_s;
-  bool is_met;
-
-  float end() const { return end_s; }
-
-  bool operator()(std::uint32_t record) {
+  [[gnu::always_inline]] bool operator()(std::uint32_t record) {
     Candidate c;
-    if (!mayEnter(*view, *query, *ray, ray->t_end, record, found->work, c)) {
+    if (!mayEnter(record, ray_.t_end, c)) {
       return true;
     }
-    if (c.certain && c.enter_hi <= ray->t_inside) {
-      is_met = true;
+    if (c.certain && c.enter_hi <= ray_.t_inside) {
+      is_met_ = true;
       return false;
     }
-    return leaveToCaller(*found, c, take, context);
+    return leaveToCaller(c);
   }
+
+  Answer answer() const { return is_met_ ? Answer::kYes : answerOfFound(); }
+
+ private:
+  float end_s_ = 0.0F;
+  bool is_met_ = false;
 };
 
-static inline AnyVisit anyVisit(const SceneView& view, const RayQuery& query, const Ray& ray,
-                                Found& found, Take take, void* context) {
-  return {&view, &query, &ray, &found, take, context, ray.in_float.end_s, false};
-}
+/// A search for all boxes.
+class AllVisit : public RayVisit {
+ public:
+  using RayVisit::RayVisit;
 
-static Answer any(const SceneView& view, const RayQuery& query, Found& found, Take take,
-                  void* context) {
-  Ray ray;
-  const Outcome outcome = begin(view, query, found, ray, view.depth > 2);
-  if (outcome != Outcome::kReady) {
-    return outcome == Outcome::kMiss ? Answer::kUndecided : Answer::kNotTaken;
-  }
-  AnyVisit visit = anyVisit(view, query, ray, found, take, context);
-  descendInStretches(view, ray.in_float, found.work, visit);
-  return visit.is_met ? Answer::kYes : Answer::kUndecided;
-}
-
-struct AllVisit {
-  const SceneView& view;
-  const RayQuery& query;
-  const Ray& ray;
-  Found& found;
-  Take take;
-  void* context;
-
-  bool operator()(std::uint32_t record) {
+  [[gnu::always_inline]] bool operator()(std::uint32_t record) {
     Candidate c;
-    return !mayEnter(view, query, ray, ray.t_end, record, found.work, c) ||
-           leaveToCaller(found, c, take, context);
+    return !mayEnter(record, ray_.t_end, c) || leaveToCaller(c);
   }
+
+  Answer answer() const { return answerOfFound(); }
 };
 
-static bool all(const SceneView& view, const RayQuery& query, Found& found, Take take,
-                void* context) {
-  Ray ray;
-  const Outcome outcome = begin(view, query, found, ray, view.depth > 2);
-  if (outcome == Outcome::kReady) {
-    AllVisit visit{view, query, ray, found, take, context};
-    descend(view, ray.in_float, found.work, visit);
+template <typename Visit>
+[[gnu::noinline]] static Answer searchTree(const SceneView& view, const RayQuery& query,
+                                           Found& found, FloatRay& ray) {
+  Visit visit(view, query, found, ray);
+  descendInStretches(view, ray, visit);
+  return visit.answer();
+}
+
+/// Searches the bounds of a scene.
+template <typename Visit>
+[[gnu::noinline]] static Answer searchBounds(const SceneView& view, const RayQuery& query,
+                                             Found& found) {
+  FloatRay ray;
+  const Outcome outcome = prepare(view, query, ray, view.depth > 2);
+  if (outcome != Outcome::kReady) {
+    return outcome == Outcome::kMiss ? Answer::kNone : Answer::kNotTaken;
   }
-  return outcome != Outcome::kNotTaken;
+  return view.depth == 1 ? searchList<Visit>(view, query, found, ray)
+                         : searchTree<Visit>(view, query, found, ray);
+}
+
+/// (Each with little of its own, so that most rays among few boxes need no more.)
+template <typename Visit>
+static Answer search(const SceneView& view, const RayQuery& query, Found& found) {
+  if (view.boxes_in_blocks > 0) {
+    BlockRay ray;
+    if (prepare(view, query, ray)) {
+      return searchBlocks<Visit>(view, query, found, ray);
+    }
+  }
+  return view.depth > 0 ? searchBounds<Visit>(view, query, found) : Answer::kNone;
+}
+
+static Answer closest(const SceneView& view, const RayQuery& query, Found& found) {
+  return search<ClosestVisit>(view, query, found);
+}
+
+static Answer any(const SceneView& view, const RayQuery& query, Found& found) {
+  return search<AnyVisit>(view, query, found);
+}
+
+static Answer all(const SceneView& view, const RayQuery& query, Found& found) {
+  FloatRay ray;
+  const Outcome outcome = view.depth > 0 ? prepare(view, query, ray, false) : Outcome::kMiss;
+  if (outcome != Outcome::kReady) {
+    return outcome == Outcome::kMiss ? Answer::kNone : Answer::kNotTaken;
+  }
+  AllVisit visit(view, query, found, ray);
+  descend(view, ray, visit);
+  return visit.answer();
 }

@@ -1,55 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sixteen rays in lanes, against one bound after the other. Most rays are done with what is
-// compared in float; only for those that may meet a box is anything prepared in double.
-//
-// A ray is o + t d, o relative to the center of the scene, d raised to +-kFlattestInLanes in each
-// coordinate. With u = 2^-24, S = |o|_1 + A, A the largest |p|_1 of a point p in the bounds of the
-// scene: where the ray is in bounds, |t d|_2 <= |o|_2 + |p|_2 <= S. Computed as
-// multiplyAdd(plane, r, -o r), r = 1 / d, in metres along the axis
-// - r is off by 2u, of d and of the quotient, the product with a plane by u: 3u S,
-// - -o r by u of o, 2u of r, u of the product and u of what is added to o below: 5u S,
-// - the sum by u S, and the ray by t kFlattestInLanes <= 2^-39 S where d is raised.
-// Together 9u S and what is left of second order: planes are moved apart by kInLanes S. No product
-// overflows: |plane| and |o| < 2^61, r <= 2^60.
-
-constexpr float kFlattestInLanes = 0x1p-60F;
+// Sixteen usual rays in lanes, against one bound after the other: their numbers are those of ray.h.
 
 struct RaysInLanes {
   Float16 inverse[3];
   Float16 shift[2][3];  ///< of the planes at the minimum and at the maximum
   Float16 end;
   Float16 squared_length;      ///< of the direction
-  std::uint32_t fit;           ///< a bit for each ray for which all this holds
+  std::uint32_t fit;           ///< a bit for each ray that is a usual one
   std::uint32_t goes_down[3];  ///< and, of each axis, for those that go down it
 };
 
-/// The largest |p|_1 of a point in the bounds of the scene.
-static inline double reachOf(const SceneView& view) {
-  const Double4 size = larger(magnitude(load4(view.around[0])), magnitude(load4(view.around[1])));
-  return sum3(size);
-}
-
 /// @param rays sixteen of them
-template <bool kHaveEnds>
+template <bool kAreSegments>
 static inline void prepareLanes(const SceneView& view, const double* rays, Float16 max_range,
                                 RaysInLanes& lanes) {
   const Float16 zero = all16(0.0F);
   Float16 o[3];
   Float16 d[3];
-  loadRays(rays, load4(view.center), o, d);
-  const Float16 reach = magnitude(o[0]) + magnitude(o[1]) + magnitude(o[2]);
-  const Float16 size = magnitude(d[0]) + magnitude(d[1]) + magnitude(d[2]);
+  loadRays<kAreSegments>(rays, load4(view.center), o, d);
+  const auto largest = [](const Float16* v) {
+    return larger(larger(magnitude(v[0]), magnitude(v[1])), magnitude(v[2]));
+  };
+  const Float16 size = largest(d);
   // (Nothing is said of NaN either.)
-  lanes.fit = notAbove(reach, all16(static_cast<float>(kFarthestInBlocks))) &
-              notAbove(size, all16(static_cast<float>(kLongestInBlocks))) &
-              notAbove(all16(static_cast<float>(1.0 / kLongestInBlocks)), size);
-  const auto pad = static_cast<float>(bounds::kInLanes * bounds::kUp);
-  const Float16 apart = multiplyAdd(
-      reach, all16(pad),
-      all16(static_cast<float>(reachOf(view)) * pad + static_cast<float>(bounds::kFloatUnderflow)));
+  lanes.fit = notAbove(largest(o), all16(kUsualDistance)) & notAbove(size, all16(kUsualLength)) &
+              notAbove(all16(1.0F / kUsualLength), size);
+  const Float16 apart =
+      multiplyAdd(magnitude(o[0]) + magnitude(o[1]) + magnitude(o[2]),
+                  all16(static_cast<float>(bounds::kApart * bounds::kUp)), all16(view.apart));
   Float16 squared = zero;
   for (int i = 0; i < 3; ++i) {
-    const Float16 steep = larger(magnitude(d[i]), all16(kFlattestInLanes));
+    const Float16 steep = larger(magnitude(d[i]), all16(kFlattest));
     lanes.inverse[i] = withSignOf(all16(1.0F) / steep, d[i]);
     lanes.shift[0][i] = zero - (o[i] + apart) * lanes.inverse[i];
     lanes.shift[1][i] = (apart - o[i]) * lanes.inverse[i];
@@ -59,7 +40,7 @@ static inline void prepareLanes(const SceneView& view, const double* rays, Float
   lanes.squared_length = squared;
   lanes.end = multiplyAdd(overRoot(max_range, squared), all16(static_cast<float>(bounds::kUp)),
                           all16(static_cast<float>(bounds::kFloatUnderflow)));
-  if constexpr (kHaveEnds) {
+  if constexpr (kAreSegments) {
     lanes.end = smaller(lanes.end, all16(1.0F));
   }
 }
@@ -139,10 +120,10 @@ struct RaysOfLanes {
 }
 
 /// What searches of sixteen rays have in common.
-template <typename Ask>
+template <typename What>
 class LaneSearch {
  public:
-  using Visit = typename Ask::Visit;
+  using Visit = typename What::Visit;
 
   LaneSearch(const SceneView& view, const RayQueries& queries, const Delivery& to)
       : view_(view), queries_(queries), to_(to) {}
@@ -153,7 +134,8 @@ class LaneSearch {
   std::uint32_t takeUp(std::size_t first, int count) {
     first_ = first;
     begun_ = 0;
-    prepareLanes<Ask::kHaveEnds>(view_, raysFrom(first, count), rangesFrom(first, count), lanes_);
+    prepareLanes<What::kAreSegments>(view_, raysFrom(first, count), rangesFrom(first, count),
+                                     lanes_);
     return lanes_.fit & ((1U << count) - 1);
   }
 
@@ -162,20 +144,19 @@ class LaneSearch {
     if ((begun_ >> ray & 1) == 0) {
       begin(ray, c);
     }
-    if (near <= c.inFloat().end_s * static_cast<float>(bounds::kFarther) && !c.visit(record)) {
-      c.inFloat().end_s = -1.0F;  // nothing lies before it
+    if (near <= c.in_float.end_s && !c.visit(record)) {
+      c.in_float.end_s = -1.0F;  // nothing lies before it
     }
   }
 
   void deliver(int ray) {
     Companion<Visit>& c = rays_[ray];
-    to_.take(c.number, is_taken_ >> ray & 1 ? Ask::answerOf(c) : Answer::kNotTaken, c.gave_up,
-             c.found);
+    to_.take(c.number, c.visit.answer(), c.gave_up, c.found);
   }
 
   void askEachAlone(std::uint32_t rays) {
     for (; rays != 0; rays &= rays - 1) {
-      askAlone<Ask>(view_, queries_, first_ + static_cast<std::size_t>(lowestBit(rays)), to_);
+      askAlone<What>(view_, queries_, first_ + static_cast<std::size_t>(lowestBit(rays)), to_);
     }
   }
 
@@ -215,20 +196,15 @@ class LaneSearch {
   }
 
   [[gnu::always_inline]] void begin(int ray, Companion<Visit>& c) {
-    c.number = first_ + static_cast<std::size_t>(ray);
-    c.query = queries_.query(c.number, Ask::kHaveEnds);
-    c.gave_up = false;
-    c.found.count = 0;
-    c.found.work = Work();
-    c.inFloat().scale = 1.0;
-    const bool taken = prepareInDouble(view_, c.query, partsOf(view_, c.query), c.ray);
-    c.found.t_inside = c.ray.t_inside;
-    c.inFloat().setRange(0.0F, taken ? c.inFloat().roundedUp(c.ray.t_end) : -1.0F);
-    c.visit = Ask::visitOf(view_, c);
+    const std::size_t number = first_ + static_cast<std::size_t>(ray);
+    c.in_float.scale = 1.0;
+    c.in_float.setRange(0.0F, std::numeric_limits<float>::infinity());
+    to_.begin(view_, queries_.query(number, What::kAreSegments), number, c);
+    if (!c.visit.begin()) {
+      c.in_float.end_s = -1.0F;
+    }
     begun_ |= 1U << ray;
-    is_taken_ = (is_taken_ & ~(1U << ray)) | (static_cast<std::uint32_t>(taken) << ray);
   }
 
   double copies_[6 * kSlots];
-  std::uint32_t is_taken_ = 0;  ///< of those begun, for which it could be
 };

@@ -31,38 +31,64 @@ template <typename Record, typename Visit>
                                                     Visit& visit) {
   for (; met != 0; met &= met - 1) {
     const int slot = __builtin_ctzll(met);
-    if (nears[slot] <= ray.end_s * static_cast<float>(bounds::kFarther) && !visit(record(slot))) {
+    if (nears[slot] <= ray.end_s && !visit(record(slot))) {
       return false;
     }
   }
   return true;
 }
 
-/// Of a tree that is one list: all bounds, or all boxes in float, are compared before any in
-/// double.
+/// Visits what a ray may meet of a list. Nodes of a list, and blocks, are full, but for the last:
+/// the number of a slot among them is that of its record.
 template <typename Visit>
-static bool visitList(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
-  alignas(64) float nears[kMostRootNodes * kSlots];
-  std::uint64_t met[kRootWords] = {0, 0};
-  if (ray.for_blocks) {
-    work.nodes += (view.boxes_in_blocks + kSlots - 1) / kSlots;
-    // NOLINTBEGIN(misc-redundant-expression): with AVX-512 the lanes of a block are sixteen
-    met[0] = view.boxes_in_blocks > 8 ? meetsBlocks<BlockLanes>(view, ray, nears)
-                                      : meetsBlocks<Float8>(view, ray, nears);
-    // NOLINTEND(misc-redundant-expression)
-  } else {
-    const Level& list = view.levels[0];
-    work.nodes += list.nodes;
-    meetsNodes(list.bounds, static_cast<int>(list.nodes), RayLanes(ray), nears, met);
-  }
-  for (int w = 0; w < kRootWords; ++w) {
-    // Nodes of a list, and blocks, are full, but for the last: slot number and record are the same.
-    const auto record = [w](int slot) { return static_cast<std::uint32_t>(64 * w + slot); };
-    if (!visitWord(met[w], nears + 64 * w, ray, record, visit)) {
-      return false;
+[[gnu::noinline]] static Answer visitList(const SceneView& view, const RayQuery& query,
+                                          Found& found, FloatRay& ray, const std::uint64_t* met,
+                                          const float* nears) {
+  Visit visit(view, query, found, ray);
+  if (visit.begin()) {
+    for (int w = 0; w < kRootWords; ++w) {
+      const auto record = [w](int slot) { return static_cast<std::uint32_t>(64 * w + slot); };
+      if (!visitWord(met[w], nears + 64 * w, ray, record, visit)) {
+        break;
+      }
     }
   }
-  return true;
+  return visit.answer();
+}
+
+/// Of a tree that is one list: all bounds are compared before any box in double.
+template <typename Visit>
+static Answer searchList(const SceneView& view, const RayQuery& query, Found& found,
+                         FloatRay& ray) {
+  alignas(64) float nears[kMostRootNodes * kSlots];
+  std::uint64_t met[kRootWords] = {0, 0};
+  const Level& list = view.levels[0];
+  found.work->nodes += list.nodes;
+  meetsNodes(list.bounds, static_cast<int>(list.nodes), RayLanes(ray), nears, met);
+  return (met[0] | met[1]) == 0 ? Answer::kNone
+                                : visitList<Visit>(view, query, found, ray, met, nears);
+}
+
+/// The same where all boxes are in blocks.
+template <typename Visit>
+[[gnu::always_inline]] static inline Answer searchBlocks(const SceneView& view,
+                                                         const RayQuery& query, Found& found,
+                                                         const BlockRay& ray) {
+  alignas(64) float nears[kMostInBlocks];
+  found.work->nodes += (view.boxes_in_blocks + kSlots - 1) / kSlots;
+  // NOLINTBEGIN(misc-redundant-expression): with AVX-512 the lanes of a block are sixteen
+  const std::uint64_t met[kRootWords] = {view.boxes_in_blocks > 8
+                                             ? meetsBlocks<BlockLanes>(view, ray, nears)
+                                             : meetsBlocks<Float8>(view, ray, nears),
+                                         0};
+  // NOLINTEND(misc-redundant-expression)
+  if (met[0] == 0) {
+    return Answer::kNone;
+  }
+  FloatRay range;
+  range.scale = 1.0;
+  range.setRange(0.0F, ray.end);
+  return visitList<Visit>(view, query, found, range, met, nears);
 }
 
 /// Visits the records of leaves that the ray may meet; four leaves are compared before any record
@@ -70,7 +96,7 @@ static bool visitList(const SceneView& view, FloatRay& ray, Work& work, Visit& v
 /// @param leaves a bit for each that is compared, by its slot among the roots
 template <typename Visit>
 static bool visitLeaves(const SceneView& view, const std::uint64_t* leaves, FloatRay& ray,
-                        Work& work, Visit& visit) {
+                        Visit& visit) {
   const Level& top = view.levels[1];
   const Level& here = view.levels[0];
   const RayLanes lanes(ray);
@@ -86,13 +112,13 @@ static bool visitLeaves(const SceneView& view, const std::uint64_t* leaves, Floa
         const int slot = 64 * w + __builtin_ctzll(bits);
         const std::uint32_t leaf =
             top.first[slot / kSlots] + static_cast<std::uint32_t>(slot % kSlots);
-        ++work.nodes;
+        ++visit.found->work->nodes;
         Float16 near;
         met |= static_cast<std::uint64_t>(meets(here.bounds[leaf], lanes, near)) << shift;
         store16(nears + shift, near);
         first[shift / kSlots] = here.first[leaf];
       }
-      if (!visitWord(met, nears, ray, record, visit)) {
+      if (met != 0 && (!visit.begin() || !visitWord(met, nears, ray, record, visit))) {
         return false;
       }
     }
@@ -103,16 +129,16 @@ static bool visitLeaves(const SceneView& view, const std::uint64_t* leaves, Floa
 /// Visits records from near to far, as long as visit.end() [s] lies beyond: leaves wait until the
 /// stretch of the ray comes in which it enters them.
 template <typename Visit>
-static void visitTwoLevels(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
+static void visitTwoLevels(const SceneView& view, FloatRay& ray, Visit& visit) {
   const Level& top = view.levels[1];
   const auto roots = static_cast<int>(top.nodes);
-  work.nodes += top.nodes;
+  visit.found->work->nodes += top.nodes;
   alignas(64) float nears[kMostRootNodes * kSlots];
   std::uint64_t later[kRootWords] = {0, 0};
   meetsNodes(top.bounds, roots, RayLanes(ray), nears, later);
-  float length = firstStretch(view);
+  float length = ray.stretch_s;
   if (!(ray.begin_s + length < ray.end_s)) {
-    visitLeaves(view, later, ray, work, visit);
+    visitLeaves(view, later, ray, visit);
     return;
   }
   for (float end = ray.begin_s + length;; length *= 2.0F, end += length) {
@@ -126,8 +152,7 @@ static void visitTwoLevels(const SceneView& view, FloatRay& ray, Work& work, Vis
       due[w] = later[w] & entered;
       later[w] &= ~entered;
     }
-    if (!visitLeaves(view, due, ray, work, visit) || (later[0] | later[1]) == 0 ||
-        !(end < visit.end())) {
+    if (!visitLeaves(view, due, ray, visit) || (later[0] | later[1]) == 0 || !(end < visit.end())) {
       return;
     }
   }

@@ -15,16 +15,15 @@ constexpr int kAhead = 4;
 /// A ray under way.
 template <typename Visit>
 struct Companion {
-  Ray ray;
+  FloatRay in_float;
   Found found;
   Visit visit;
-  std::size_t number;  ///< of the query
   RayQuery query;
-  bool gave_up;  ///< more candidates than there is room for
+  std::size_t number;  ///< of the query
+  bool gave_up;        ///< more candidates than there is room for
   float begin;
   float length;
 
-  FloatRay& inFloat() { return ray.in_float; }
   /// The end of the stretch that it is on.
   float end() const { return begin + length; }
 };
@@ -71,9 +70,8 @@ struct Company {
       } else {
         forEachRecord(view, list, listed, [&](std::uint32_t entry, int i) {
           Companion<Visit>& c = rayOf(entry);
-          if (nears[i] <= c.inFloat().end_s * static_cast<float>(bounds::kFarther) &&
-              !c.visit(numberOf(entry))) {
-            c.inFloat().end_s = -1.0F;  // nothing lies before it
+          if (nears[i] <= c.in_float.end_s && !c.visit(numberOf(entry))) {
+            c.in_float.end_s = -1.0F;  // nothing lies before it
           }
         });
       }
@@ -82,9 +80,9 @@ struct Company {
     for (int k = 0; k < count; ++k) {
       const std::uint32_t node = numberOf(nodes[k]);
       Companion<Visit>& c = rayOf(nodes[k]);
-      ++c.found.work.nodes;
+      ++c.found.work->nodes;
       Float16 near;
-      const std::uint32_t bits = meets(here.bounds[node], RayLanes(c.inFloat()), near);
+      const std::uint32_t bits = meets(here.bounds[node], RayLanes(c.in_float), near);
       listed = append(bits, here.first[node] | rayBits(nodes[k]), near, list, nears, listed);
       if (listed > kListedTogether - kSlots) {
         goOn();
@@ -102,44 +100,12 @@ static double giveUp(void* gave_up, const Found& /*found*/) {
   return -std::numeric_limits<double>::infinity();
 }
 
-/// What is asked of each ray: which box is the closest.
-struct AskClosest {
-  static constexpr bool kHaveEnds = false;
-  using Visit = ClosestVisit;
-
-  static Visit visitOf(const SceneView& view, Companion<Visit>& c) {
-    return closestVisit(view, c.query, c.ray, c.found, giveUp, &c.gave_up);
-  }
-  static Answer answerOf(Companion<Visit>& c) {
-    c.visit.dropLater();
-    return Answer::kUndecided;
-  }
-  static Answer askAlone(const SceneView& view, const RayQuery& query, Found& found, Take take,
-                         void* context) {
-    return closest(view, query, found, take, context) ? Answer::kUndecided : Answer::kNotTaken;
-  }
+/// What is asked of each ray.
+template <typename HowToVisit, bool kOfSegments>
+struct Ask {
+  using Visit = HowToVisit;
+  static constexpr bool kAreSegments = kOfSegments;
 };
-
-/// Whether any box is met.
-template <bool kAreSegments>
-struct AskAnyOf {
-  static constexpr bool kHaveEnds = kAreSegments;
-  using Visit = AnyVisit;
-
-  static Visit visitOf(const SceneView& view, Companion<Visit>& c) {
-    return anyVisit(view, c.query, c.ray, c.found, giveUp, &c.gave_up);
-  }
-  static Answer answerOf(const Companion<Visit>& c) {
-    return c.visit.is_met ? Answer::kYes : Answer::kUndecided;
-  }
-  static Answer askAlone(const SceneView& view, const RayQuery& query, Found& found, Take take,
-                         void* context) {
-    return any(view, query, found, take, context);
-  }
-};
-
-using AskAny = AskAnyOf<false>;
-using AskAnyOfSegments = AskAnyOf<true>;
 
 /// Where what is found goes.
 struct Delivery {
@@ -147,31 +113,35 @@ struct Delivery {
   void* context;
   Work& work;
 
-  void count(const Work& more) const {
-    work.nodes += more.nodes;
-    work.boxes += more.boxes;
-    work.turned_boxes += more.turned_boxes;
+  template <typename Visit>
+  void begin(const SceneView& view, const RayQuery& query, std::size_t number,
+             Companion<Visit>& c) const {
+    c.number = number;
+    c.query = query;
+    c.gave_up = false;
+    c.found.count = 0;
+    c.found.work = &work;
+    c.found.take = giveUp;
+    c.found.context = &c.gave_up;
+    c.visit = Visit(view, c.query, c.found, c.in_float);
   }
 
   void take(std::size_t number, Answer answer, bool gave_up, const Found& found) const {
     if (answer == Answer::kNotTaken || gave_up) {
       deliver(context, number, Answer::kNotTaken, nullptr);
-      return;
-    }
-    count(found.work);
-    if (answer == Answer::kYes || found.count > 0) {
+    } else if (answer != Answer::kNone) {
       deliver(context, number, answer, &found);
     }
   }
 };
 
-template <typename Ask>
+template <typename What>
 static void askAlone(const SceneView& view, const RayQueries& queries, std::size_t number,
                      const Delivery& to) {
-  Found found;
   bool gave_up = false;
-  const Answer answer =
-      Ask::askAlone(view, queries.query(number, Ask::kHaveEnds), found, giveUp, &gave_up);
+  Found found(&to.work, giveUp, &gave_up);
+  const RayQuery query = queries.query(number, What::kAreSegments);
+  const Answer answer = search<typename What::Visit>(view, query, found);
   to.take(number, answer, gave_up, found);
 }
 
@@ -182,10 +152,10 @@ struct RestOfRay {
 };
 
 /// Down a tree.
-template <typename Ask>
-static void searchTree(const SceneView& view, const RayQueries& queries, const RestOfRay* rests,
-                       std::size_t count, const Delivery& to) {
-  using Visit = typename Ask::Visit;
+template <typename What>
+static void searchRests(const SceneView& view, const RayQueries& queries, const RestOfRay* rests,
+                        std::size_t count, const Delivery& to) {
+  using Visit = typename What::Visit;
   Companion<Visit> rays[kRaysTogether];
   const Company<Visit> company{view, rays};
   const int top = view.depth - 1;
@@ -199,25 +169,22 @@ static void searchTree(const SceneView& view, const RayQueries& queries, const R
       Companion<Visit>& c = rays[i];
       while ((under_way & (1U << i)) == 0 && next < count) {
         const RestOfRay& rest = rests[next++];
-        c.number = rest.number;
-        c.query = queries.query(c.number, Ask::kHaveEnds);
-        c.gave_up = false;
-        const Outcome outcome = begin(view, c.query, c.found, c.ray, true);
-        if (outcome == Outcome::kReady) {
-          c.visit = Ask::visitOf(view, c);
+        const RayQuery query = queries.query(rest.number, What::kAreSegments);
+        const Outcome outcome = prepare(view, query, c.in_float, true);
+        to.begin(view, query, rest.number, c);
+        if (outcome == Outcome::kReady && c.visit.begin()) {
           const float begun =
-              rest.begin * static_cast<float>(c.inFloat().scale * (2.0 - bounds::kUp));
-          c.begin = begun > c.inFloat().begin_s ? begun : c.inFloat().begin_s;
-          c.length = firstStretch(view) * (rest.begin > 0.0F ? 2.0F : 1.0F);
+              rest.begin * static_cast<float>(c.in_float.scale * (2.0 - bounds::kUp));
+          c.begin = begun > c.in_float.begin_s ? begun : c.in_float.begin_s;
+          c.length = c.in_float.stretch_s * (rest.begin > 0.0F ? 2.0F : 1.0F);
           under_way |= 1U << i;
-        } else {
-          to.take(c.number, outcome == Outcome::kMiss ? Answer::kUndecided : Answer::kNotTaken,
-                  false, c.found);
+        } else if (outcome != Outcome::kMiss) {
+          to.take(rest.number, Answer::kNotTaken, false, c.found);
         }
       }
       if ((under_way & (1U << i)) != 0) {
         const float whole = c.visit.end();
-        c.inFloat().setRange(c.begin, c.end() < whole ? c.end() : whole);
+        c.in_float.setRange(c.begin, c.end() < whole ? c.end() : whole);
         for (std::uint32_t root = 0; root < roots; ++root) {
           nodes[listed++] = root | (i << kNumberBits);
         }
@@ -230,13 +197,12 @@ static void searchTree(const SceneView& view, const RayQueries& queries, const R
     for (std::uint32_t bits = under_way; bits != 0; bits &= bits - 1) {
       const int i = lowestBit(bits);
       Companion<Visit>& c = rays[i];
-      if (c.inFloat().end_s >= 0.0F && c.end() < c.visit.end()) {
+      if (c.in_float.end_s >= 0.0F && c.end() < c.visit.end()) {
         c.begin = c.end();
         c.length *= 2.0F;
       } else {
         under_way &= ~(1U << i);
-        const Answer answer = Ask::answerOf(c);
-        to.take(c.number, answer, c.gave_up, c.found);
+        to.take(c.number, c.visit.answer(), c.gave_up, c.found);
       }
     }
   }

@@ -13,20 +13,20 @@ alignas(64) constexpr std::uint32_t kRoots[kSlots] = {0, 1, 2,  3,  4,  5,  6,  
 /// @param visit visit(record) -> false to end; may shorten the ray
 template <typename Visit>
 static bool descend(const SceneView& view, int level, const std::uint32_t* nodes, int count,
-                    FloatRay& ray, Work& work, Visit& visit) {
+                    FloatRay& ray, Visit& visit) {
   alignas(64) std::uint32_t lists[2][kListed + kSlots];
   const RayLanes lanes(ray);
   for (; level > 0; --level) {
     const Level& here = view.levels[level];
     std::uint32_t* list = lists[level % 2];
-    work.nodes += static_cast<std::uint32_t>(count);
+    visit.found->work->nodes += static_cast<std::uint32_t>(count);
     int listed = 0;
     for (int k = 0; k < count; ++k) {
       Float16 near;
       const std::uint32_t bits = meets(here.bounds[nodes[k]], lanes, near);
       listed = append(bits, here.first[nodes[k]], list, listed);
       if (listed > kListed - kSlots) {
-        if (!descend(view, level - 1, list, listed, ray, work, visit)) {
+        if (!descend(view, level - 1, list, listed, ray, visit)) {
           return false;
         }
         listed = 0;
@@ -37,12 +37,15 @@ static bool descend(const SceneView& view, int level, const std::uint32_t* nodes
   }
   const Level& here = view.levels[0];
   std::uint32_t* list = lists[0];
-  work.nodes += static_cast<std::uint32_t>(count);
+  visit.found->work->nodes += static_cast<std::uint32_t>(count);
   int listed = 0;
   alignas(64) float nears[kListed + kSlots];
   const auto visitListed = [&] {
+    if (listed > 0 && !visit.begin()) {
+      return false;
+    }
     for (int i = 0; i < listed; ++i) {
-      if (nears[i] <= ray.end_s * static_cast<float>(bounds::kFarther) && !visit(list[i])) {
+      if (nears[i] <= ray.end_s && !visit(list[i])) {
         return false;
       }
     }
@@ -63,33 +66,26 @@ static bool descend(const SceneView& view, int level, const std::uint32_t* nodes
 }
 
 template <typename Visit>
-static bool descend(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
-  if (view.depth == 1) {
-    return visitList(view, ray, work, visit);
-  }
+static bool descend(const SceneView& view, FloatRay& ray, Visit& visit) {
   const int top = view.depth - 1;
-  return descend(view, top, kRoots, static_cast<int>(view.levels[top].nodes), ray, work, visit);
+  return descend(view, top, kRoots, static_cast<int>(view.levels[top].nodes), ray, visit);
 }
 
 /// Visits records from near to far, a stretch of the ray at a time, as long as visit.end() [s] lies
 /// beyond. A record may be visited in more than one stretch.
 template <typename Visit>
-static void descendInStretches(const SceneView& view, FloatRay& ray, Work& work, Visit& visit) {
-  if (view.depth == 1) {
-    visitList(view, ray, work, visit);
-    return;
-  }
+static void descendInStretches(const SceneView& view, FloatRay& ray, Visit& visit) {
   if (view.depth == 2) {
-    visitTwoLevels(view, ray, work, visit);
+    visitTwoLevels(view, ray, visit);
     return;
   }
   float begin = ray.begin_s;
-  float length = firstStretch(view);
+  float length = ray.stretch_s;
   for (;;) {
     const float whole = visit.end();
     const float end = begin + length;
     ray.setRange(begin, end < whole ? end : whole);
-    if (!descend(view, ray, work, visit) || !(end < visit.end())) {
+    if (!descend(view, ray, visit) || !(end < visit.end())) {
       return;
     }
     begin = end;

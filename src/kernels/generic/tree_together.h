@@ -12,9 +12,9 @@ struct Unfinished {
   bool hasRoomForAll() const { return count + kSlots <= kMost; }
 };
 
-template <typename Ask>
-class TreeSearch : LaneSearch<Ask> {
-  using Base = LaneSearch<Ask>;
+template <typename What>
+class TreeSearch : LaneSearch<What> {
+  using Base = LaneSearch<What>;
   using Base::begun_;
   using Base::lanes_;
   using Base::rays_;
@@ -38,9 +38,6 @@ class TreeSearch : LaneSearch<Ask> {
       if (!isDone(ray, is_begun, whole[ray])) {
         // (What was found is found again, with its first stretch.)
         const bool is_empty = !is_begun || rays_[ray].found.count == 0;
-        if (is_begun) {
-          to_.count(rays_[ray].found.work);
-        }
         unfinished.rests[unfinished.count++] = {
             static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(ray),
             is_empty ? in_memory_.end[ray] : 0.0F};
@@ -57,7 +54,7 @@ class TreeSearch : LaneSearch<Ask> {
   bool isDone(int ray, bool is_begun, float whole) {
     const float end = in_memory_.end[ray];
     return whole <= end ||
-           (is_begun && (rays_[ray].inFloat().end_s < 0.0F || rays_[ray].visit.end() <= end));
+           (is_begun && (rays_[ray].in_float.end_s < 0.0F || rays_[ray].visit.end() <= end));
   }
 
   /// Ends the rays one stretch behind where they enter the bounds of the scene.
@@ -150,45 +147,45 @@ class TreeSearch : LaneSearch<Ask> {
   RaysOfLanes in_memory_;
 };
 
-template <typename Ask>
+template <typename What>
 static void searchInLanes(const SceneView& view, const RayQueries& queries, const Delivery& to) {
-  TreeSearch<Ask> search(view, queries, to);
+  TreeSearch<What> search(view, queries, to);
   Unfinished unfinished;
   for (std::size_t first = 0; first < queries.count; first += kSlots) {
     if (!unfinished.hasRoomForAll()) {
-      searchTree<Ask>(view, queries, unfinished.rests, unfinished.count, to);
+      searchRests<What>(view, queries, unfinished.rests, unfinished.count, to);
       unfinished.count = 0;
     }
     const std::size_t left = queries.count - first;
     search.run(first, left < kSlots ? static_cast<int>(left) : kSlots, unfinished);
   }
-  searchTree<Ask>(view, queries, unfinished.rests, unfinished.count, to);
+  searchRests<What>(view, queries, unfinished.rests, unfinished.count, to);
 }
 
-template <typename Ask>
+template <typename What>
 static void askTogether(const SceneView& view, const RayQueries& queries, const Delivery& to) {
   if (view.depth == 1) {
-    searchList<Ask>(view, queries, to);
+    searchListTogether<What>(view, queries, to);
   } else if (view.depth > 1 && view.levels[0].nodes <= kLargestNumber / kSlots) {
-    searchInLanes<Ask>(view, queries, to);
+    searchInLanes<What>(view, queries, to);
   } else {
     for (std::size_t i = 0; i < queries.count; ++i) {
-      askAlone<Ask>(view, queries, i, to);
+      askAlone<What>(view, queries, i, to);
     }
   }
 }
 
 static void closestTogether(const SceneView& view, const RayQueries& queries, Deliver deliver,
                             void* context, Work& work) {
-  askTogether<AskClosest>(view, queries, {deliver, context, work});
+  askTogether<Ask<ClosestVisit, false>>(view, queries, {deliver, context, work});
 }
 
 static void anyTogether(const SceneView& view, const RayQueries& queries, Deliver deliver,
                         void* context, Work& work) {
-  askTogether<AskAny>(view, queries, {deliver, context, work});
+  askTogether<Ask<AnyVisit, false>>(view, queries, {deliver, context, work});
 }
 
 static void anyOfSegmentsTogether(const SceneView& view, const RayQueries& queries, Deliver deliver,
                                   void* context, Work& work) {
-  askTogether<AskAnyOfSegments>(view, queries, {deliver, context, work});
+  askTogether<Ask<AnyVisit, true>>(view, queries, {deliver, context, work});
 }
