@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Markers serialised by roscpp, decoded by us.
-#include "ros/box_source.h"
+#include "unit/marker_messages.h"
 
-#include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <random>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <ros/serialization.h>
-#include <visualization_msgs/Marker.h>
-#include <visualization_msgs/MarkerArray.h>
 
 namespace box_query {
 namespace {
@@ -21,71 +16,7 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr std::size_t kPlenty = 1000000;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
-
-template <typename Message>
-std::vector<std::uint8_t> wire(const Message& message) {
-  namespace ser = ros::serialization;
-  std::vector<std::uint8_t> bytes(ser::serializationLength(message));
-  ser::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-  ser::serialize(stream, message);
-  return bytes;
-}
-
-template <typename Message>
-const BoxSource& sourceOf() {
-  std::string problem;
-  const BoxSource* source = findSource(ros::message_traits::datatype<Message>(),
-                                       ros::message_traits::md5sum<Message>(), problem);
-  EXPECT_NE(source, nullptr) << problem;
-  return *source;
-}
-
-template <typename Message>
-DecodedMessage decode(const Message& message, std::size_t max_boxes = kPlenty) {
-  const auto bytes = wire(message);
-  Limits limits;
-  limits.boxes = max_boxes;
-  return decodeMessage(sourceOf<Message>(), bytes.data(), bytes.size(), limits);
-}
-
-DecodedMessage decodeBytes(const std::vector<std::uint8_t>& bytes) {
-  return decodeMessage(sourceOf<MarkerArray>(), bytes.data(), bytes.size(), Limits());
-}
-
-Marker cube() {
-  Marker marker;
-  marker.header.frame_id = "odom";
-  marker.header.stamp = ros::Time(1234, 5678);
-  marker.ns = "crates";
-  marker.id = -3;
-  marker.type = Marker::CUBE;
-  marker.pose.position.x = 0.1;
-  marker.pose.position.y = -0.2;
-  marker.pose.position.z = 0.3;
-  marker.pose.orientation.z = 0.6;
-  marker.pose.orientation.w = 0.8;
-  marker.scale.x = 1.0;
-  marker.scale.y = 0.0;
-  marker.scale.z = 3.0;
-  marker.lifetime = ros::Duration(2, 500);
-  marker.frame_locked = true;
-  marker.text = "fragile";
-  marker.colors.resize(2);
-  marker.mesh_resource = "package://none";
-  return marker;
-}
-
-Marker cubeList() {
-  Marker marker = cube();
-  marker.type = Marker::CUBE_LIST;
-  marker.points.resize(3);
-  marker.points[1].x = 1.0;
-  marker.points[2].y = 2.0;
-  return marker;
-}
+using namespace test;
 
 MarkerArray arrayOf(const std::vector<Marker>& markers) {
   MarkerArray message;
@@ -93,8 +24,8 @@ MarkerArray arrayOf(const std::vector<Marker>& markers) {
   return message;
 }
 
-std::size_t countOf(const BoxChange& change, Rejection why) {
-  return change.rejections.at(static_cast<std::size_t>(why));
+DecodedMessage decodeBytes(const Bytes& bytes) {
+  return test::decodeBytes("visualization_msgs/MarkerArray", bytes);
 }
 
 TEST(MarkerSource, DecodesEveryFieldOfACube) {
@@ -130,44 +61,6 @@ TEST(MarkerSource, DecodesAnArrayAsItsMarkersInOrder) {
   EXPECT_EQ(message.changes[2].id, 4);
   EXPECT_EQ(message.changes[2].ns, "");
   EXPECT_TRUE(decode(MarkerArray()).changes.empty());
-}
-
-TEST(MarkerSource, GivesEveryBoxOfAListItsOwnIdAndPlace) {
-  Marker list = cubeList();
-  list.pose.orientation.w = list.pose.orientation.z = std::sqrt(0.5);  // a quarter turn about z
-  const DecodedMessage message = decode(list);
-  ASSERT_EQ(message.changes.size(), 1U);
-  const BoxList& boxes = message.changes[0].boxes;
-  ASSERT_EQ(boxes.size(), 3U);
-  EXPECT_EQ(message.changes[0].id, -3);
-  EXPECT_EQ(boxes[0].id, -3);
-  EXPECT_EQ(boxes[1].id, (1LL << 32) - 3);
-  EXPECT_EQ(boxes[2].id, (2LL << 32) - 3);
-  EXPECT_TRUE(boxes[0].box.center.isApprox(Vector3(0.1, -0.2, 0.3), 1e-15));
-  EXPECT_TRUE(boxes[1].box.center.isApprox(Vector3(0.1, 0.8, 0.3), 1e-15));
-  EXPECT_TRUE(boxes[2].box.center.isApprox(Vector3(-1.9, -0.2, 0.3), 1e-15));
-  for (const IdentifiedBox& each : boxes) {
-    EXPECT_EQ(each.box.orientation.w(), std::sqrt(0.5));
-    EXPECT_EQ(each.box.half_extents, Vector3(0.5, 0.0, 1.5));
-  }
-}
-
-TEST(MarkerSource, KeepsThePointsOfAnUnmovedListBitForBit) {
-  Marker list = cubeList();
-  list.pose = geometry_msgs::Pose();  // position and quaternion zero
-  list.points[1].x = 1e6 / 3.0;
-  const DecodedMessage message = decode(list);
-  EXPECT_EQ(message.changes.at(0).boxes[1].box.center, Vector3(1e6 / 3.0, 0.0, 0.0));
-}
-
-TEST(MarkerSource, TakesAListWithoutPointsAsNoBoxes) {
-  Marker list = cubeList();
-  list.points.clear();
-  const DecodedMessage message = decode(list);
-  ASSERT_EQ(message.changes.size(), 1U);
-  EXPECT_EQ(message.changes[0].kind, BoxChange::Kind::kSet);
-  EXPECT_TRUE(message.changes[0].boxes.empty());
-  EXPECT_EQ(message.changes[0].rejected(), 0U);
 }
 
 TEST(MarkerSource, TakesAZeroQuaternionAsIdentity) {
@@ -256,57 +149,6 @@ TEST(MarkerSource, RejectsNumbersThatAreNotFiniteAndKeepsTheRest) {
   }
 }
 
-TEST(MarkerSource, RejectsOnlyTheBadPointsOfAList) {
-  Marker list = cubeList();
-  list.points.resize(7);  // 21 numbers
-  using Field = double& (*)(geometry_msgs::Point&);
-  for (const Field field : {Field([](geometry_msgs::Point& p) -> double& { return p.x; }),
-                            Field([](geometry_msgs::Point& p) -> double& { return p.y; }),
-                            Field([](geometry_msgs::Point& p) -> double& { return p.z; })}) {
-    for (std::size_t n = 0; n < list.points.size(); ++n) {
-      for (const double bad : {kNan, kInf, -kInf, 3e7, -1e300}) {
-        Marker damaged = list;
-        field(damaged.points[n]) = bad;
-        const BoxChange change = decode(damaged).changes.at(0);
-        ASSERT_EQ(change.boxes.size(), 6U) << n;
-        EXPECT_EQ(change.boxes[5].id, ((n < 6 ? 6LL : 5LL) << 32) - 3)
-            << "identities do not move up";
-        const Rejection why =
-            std::abs(bad) < kInf ? Rejection::kOutOfBounds : Rejection::kNotFinite;
-        EXPECT_EQ(countOf(change, why), 1U) << bad << " at " << n;
-      }
-    }
-  }
-}
-
-TEST(MarkerSource, BoundsPlacesOfListsAndNotTheirPoints) {
-  const double largest = Limits().coordinate;
-  Marker list = cubeList();
-  list.pose = geometry_msgs::Pose();
-  const BoxChange close = decode(list).changes.at(0);
-  list.points[2].x = largest;
-  const BoxChange far_away = decode(list).changes.at(0);
-  ASSERT_EQ(far_away.boxes.size(), 3U);
-  EXPECT_EQ(far_away.boxes[2].box.center.x(), largest);
-  for (std::size_t n = 0; n < 2; ++n) {
-    EXPECT_EQ(far_away.boxes[n].id, close.boxes[n].id);
-    EXPECT_EQ(far_away.boxes[n].box.center, close.boxes[n].box.center);
-    EXPECT_EQ(far_away.boxes[n].box.half_extents, close.boxes[n].box.half_extents);
-  }
-  for (const double center : {0.0, 0.9 * largest, largest}) {
-    for (const double point : {0.101 * largest, 2.0 * largest, 1e-210}) {
-      list.pose.position.x = center;
-      list.points = {geometry_msgs::Point(), geometry_msgs::Point()};
-      list.points[1].x = point;
-      const double place = center + point;
-      const bool is_good = place <= largest && place >= kSmallestCoordinate;
-      const BoxChange change = decode(list).changes.at(0);
-      EXPECT_EQ(change.boxes.size(), is_good ? 2U : 1U) << center << " " << point;
-      EXPECT_EQ(countOf(change, Rejection::kOutOfBounds), is_good ? 0U : 1U);
-    }
-  }
-}
-
 TEST(MarkerSource, RejectsNegativeSizesOrientationsOffUnitLengthAndBadFrames) {
   Marker negative = cube();
   negative.scale.y = -1e-300;
@@ -361,15 +203,14 @@ TEST(MarkerSource, RefusesMessagesWithTooManyBoxes) {
 }
 
 TEST(MarkerSource, RefusesMessagesCutOffAnywhereOrTooLong) {
-  const std::vector<std::uint8_t> whole = wire(arrayOf({cube(), cubeList()}));
+  const Bytes whole = wire(arrayOf({cube(), cubeList()}));
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    const std::vector<std::uint8_t> cut(whole.begin(),
-                                        whole.begin() + static_cast<std::ptrdiff_t>(size));
+    const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
     const DecodedMessage message = decodeBytes(cut);
     ASSERT_NE(message.problem, "") << size;
     ASSERT_TRUE(message.changes.empty()) << size;
   }
-  std::vector<std::uint8_t> longer = whole;
+  Bytes longer = whole;
   longer.push_back(0);
   EXPECT_NE(decodeBytes(longer).problem, "");
   EXPECT_EQ(decodeBytes(whole).problem, "");
@@ -377,10 +218,10 @@ TEST(MarkerSource, RefusesMessagesCutOffAnywhereOrTooLong) {
 
 TEST(MarkerSource, RefusesClaimsOfMoreThanTheMessageHolds) {
   // Whatever four bytes claim 4e9 elements, characters or nanoseconds.
-  const std::vector<std::uint8_t> whole = wire(arrayOf({cube(), cubeList()}));
+  const Bytes whole = wire(arrayOf({cube(), cubeList()}));
   std::size_t refused = 0;
   for (std::size_t at = 0; at + 4 <= whole.size(); ++at) {
-    std::vector<std::uint8_t> bytes = whole;
+    Bytes bytes = whole;
     const std::uint32_t huge = 4000000000U;
     std::memcpy(&bytes[at], &huge, sizeof huge);
     const DecodedMessage message = decodeBytes(bytes);
@@ -391,11 +232,11 @@ TEST(MarkerSource, RefusesClaimsOfMoreThanTheMessageHolds) {
 }
 
 TEST(MarkerSource, SurvivesAnyBytes) {
-  const std::vector<std::uint8_t> whole = wire(arrayOf({cube(), cubeList(), cube()}));
+  const Bytes whole = wire(arrayOf({cube(), cubeList(), cube()}));
   std::mt19937 random(20180301);
   std::size_t accepted = 0;
   for (int round = 0; round < 20000; ++round) {
-    std::vector<std::uint8_t> bytes = whole;
+    Bytes bytes = whole;
     for (unsigned flips = random() % 8 + 1; flips > 0; --flips) {
       bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
     }
