@@ -128,6 +128,24 @@ TEST_F(SceneMonitorTf, FollowsFramesThatBoxesAreLockedTo) {
   EXPECT_TRUE(hasBoxes(*monitor_, 0));
 }
 
+TEST_F(SceneMonitorTf, PlacesBoxesOnEitherSideOfAJump) {
+  start();
+  const ros::Time before(10);
+  const ros::Time after(10, 1000000);
+  move("robot", before, 1.0, 0.0);
+  Marker locked = at(cube("robot", 2, 0.0), before);
+  locked.frame_locked = true;
+  say({at(cube("robot", 1, 0.0), before), locked, at(cube("robot", 3, 0.0), after)});
+  EXPECT_TRUE(isAt(0, Vector3(1.0, 0.0, 0.0)));
+  EXPECT_TRUE(isAt(1, Vector3(1.0, 0.0, 0.0)));
+  ASSERT_TRUE(becomes(false)) << "what is of the time behind the jump waits";
+  move("robot", after, 100.0, 0.0);  // as where the robot learns at last where it is
+  EXPECT_TRUE(becomes(true));
+  EXPECT_TRUE(isAt(0, Vector3(1.0, 0.0, 0.0))) << "it was seen before";
+  EXPECT_TRUE(isAt(1, Vector3(100.0, 0.0, 0.0))) << "it is locked to what jumped";
+  EXPECT_TRUE(isAt(2, Vector3(100.0, 0.0, 0.0)));
+}
+
 TEST_F(SceneMonitorTf, RefitsListsThatAreLockedToFrames) {
   start();
   move("belt", ros::Time(5), 5.0);
