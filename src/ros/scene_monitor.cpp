@@ -253,8 +253,8 @@ void SceneMonitor::Impl::tick() {
     tf_wanted = tracker.isWaiting();
     boxes = tracker.boxesVersion();
   }
-  history.remember();
   builder.buildAhead();
+  history.remember();  // who asks for the past does it, and who asks for now need not wait for it
   if (boxes != announced_boxes) {
     announced_boxes = boxes;
     const std::lock_guard<std::mutex> lock(changed_mutex);
