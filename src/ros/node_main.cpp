@@ -6,12 +6,30 @@
 
 #include <box_query/ros/parameters.h>
 
+#include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <iostream>
 #include <stdexcept>
+#include <thread>
 
 #include <ros/ros.h>
+
+namespace {
+
+/// roscpp takes leave of the master, and waits for ever if that hangs.
+void endWhateverTheMasterDoes() {
+  std::thread([] {
+    while (!ros::isShuttingDown()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    std::this_thread::sleep_for(std::chrono::seconds(5));
+    std::_Exit(EXIT_SUCCESS);
+  }).detach();
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   if (argc > 1 && std::strcmp(argv[1], "--help") == 0) {
@@ -22,6 +40,7 @@ int main(int argc, char** argv) {
   box_query::keepFreedMemory();
   ros::init(argc, argv, "box_query");
   std::signal(SIGTERM, [](int) { ros::requestShutdown(); });
+  endWhateverTheMasterDoes();
   const ros::NodeHandle nh;
   ros::NodeHandle private_nh("~");
   try {

@@ -86,3 +86,22 @@ def fault_master_hangs(world, report):
         report.stays(4, 2, 'complete, to clients that are connected')
         world.master.send_signal(signal.SIGCONT)
     report.right_again(time.monotonic(), 4, 2)
+
+
+def fault_master_hangs_as_the_node_ends(world, report):
+    """The master is stopped, and then SIGINT sent to the node."""
+    world.start_node(box_topics=['boxes'])
+    world.speak('boxes', 'boxes', 'MarkerArray', 'map', 4, 1, 2)
+    world.until(lambda: world.answers(4, 2), 'boxes')
+    report.begin()
+    world.master.send_signal(signal.SIGSTOP)
+    world.node.send_signal(signal.SIGINT)
+    began = time.monotonic()
+    try:
+        check(world.node.wait(60) == 0, 'the node ended with', world.node.returncode)
+    finally:
+        world.master.send_signal(signal.SIGCONT)
+    print('  the node ended, with 0, %.1f s after the signal' % (time.monotonic() - began))
+    began = time.monotonic()
+    world.start_node()
+    report.right_again(began, 4, 2, 'it was started again')
