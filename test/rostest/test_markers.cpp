@@ -155,8 +155,11 @@ TEST_F(Markers, TellWhatWaitsAndWhatIsStale) {
 
   ArrayTalker fades("fades");
   ASSERT_TRUE(fades.isHeard());
-  fades.say(array({cube("map", 1, 30)}));
-  ASSERT_TRUE(viewer.sees("boxes//fades"));
+  ASSERT_TRUE(eventually([&] {  // until it is seen: on a busy machine it may be stale before
+    fades.say(array({cube("map", 1, 30)}));
+    ros::WallDuration(0.1).sleep();
+    return viewer.hasSeen("boxes//fades");
+  }));
   ASSERT_TRUE(viewer.sees("stale//fades")) << "nothing has changed but the time";
   ASSERT_TRUE(viewer.seesDeleted("boxes//fades"));
   EXPECT_EQ(viewer.last("labels//fades").text, "test/1");
