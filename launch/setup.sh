@@ -171,6 +171,10 @@ bq_configure() {
     { [ $tests = ON ] && ! bq_has_tests "$build_dir"; }; then
     # roslaunch looks for files in the whole checkout, but for hidden folders: what is installed must not be found twice.
     echo "Configuring in $build_dir" >&2
+    # A compiler launcher that keeps what was compiled, as ccache, would find nothing again.
+    if [ $tests = ON ] && [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ]; then
+      set -- -DBOX_QUERY_PRECOMPILE=ON "$@"
+    fi
     bq_logged "$build_dir/configure.log" cmake -S "$bq_source_dir" -B "$build_dir" \
       -G 'Unix Makefiles' -DPYTHON_EXECUTABLE=/usr/bin/python3 \
       -DCMAKE_INSTALL_PREFIX="$build_dir/.install" -DCATKIN_ENABLE_TESTING=$tests "$@" || return 1
