@@ -20,6 +20,8 @@ constexpr double kFlat = 2.1;
 /// Rays against whole boxes: how far their planes are moved outward, relative to |P - M|_1 of the
 /// ray, and to |C - M|_1 + |e|_1 of the box, M the center of the scene: 19u. See generic/blocks.h.
 constexpr double kBlock = 0x1p-19;
+/// And how far inward, so that what is in between is certainly in the box: 41u.
+constexpr double kInBlock = 0x1p-18;
 /// Numbers that are rounded to float upward by it.
 constexpr double kUp = 1.0 + 0x1p-20;
 /// More than what is lost where floats underflow.

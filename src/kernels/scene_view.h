@@ -40,7 +40,8 @@ struct alignas(64) BoxRecord {
 struct alignas(64) BoxBlock {
   float axis[3][3][kSlots];  ///< [axis of the box][coordinate][slot]
   float center[3][kSlots];
-  float extent[3][kSlots];  ///< half extents, padded: see generic/blocks.h
+  float extent[3][kSlots];   ///< half extents, padded: see generic/blocks.h
+  float certain[3][kSlots];  ///< and those of what is certainly in the box
 };
 
 /// Boxes in blocks, of which a word has a bit each.

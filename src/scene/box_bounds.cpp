@@ -85,6 +85,7 @@ std::vector<kernels::BoxBlock> blocksOf(const std::vector<kernels::BoxRecord>& r
     if (k >= records.size()) {
       for (int i = 0; i < 3; ++i) {
         block.extent[i][slot] = -kInf;
+        block.certain[i][slot] = -kInf;
       }
       continue;
     }
@@ -113,9 +114,12 @@ std::vector<kernels::BoxBlock> blocksOf(const std::vector<kernels::BoxRecord>& r
     if (!(size <= kernels::kFarthestInBlocks)) {
       return {};
     }
+    const double inner_pad = pad + kernels::bounds::kInBlock * size;
     pad += kernels::bounds::kBlock * size;
     for (int i = 0; i < 3; ++i) {
       block.extent[i][slot] = static_cast<float>((extents[i] + pad) * kernels::bounds::kUp);
+      block.certain[i][slot] =
+          static_cast<float>(extents[i] * (2.0 - kernels::bounds::kUp) - inner_pad);
     }
   }
   return blocks;

@@ -152,6 +152,11 @@ TEST(Mutations, ShrunkBoundsOfBoxesInFloatAreNoticed) {
   EXPECT_GT(wrongScenes("scene_near_ties", 800), 0U);
 }
 
+TEST(Mutations, BoxesThatAreMetForSureWithoutABoundAreNoticed) {
+  const Spoilt<double> spoilt(float_bounds::kInBlock, 0.0);
+  EXPECT_GT(wrongScenes("scene_near_ties", 800), 0U);
+}
+
 TEST(Mutations, ShrunkBoundsOfRaysInFloatAreNoticed) {
   const Spoilt<double> spoilt(float_bounds::kApart, 0.0);
   EXPECT_GT(wrongScenes("scene_near_ties", 800), 0U);

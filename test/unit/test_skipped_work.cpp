@@ -104,6 +104,21 @@ TEST(SkippedWork, WhatFloatExcludesIsNotComparedInDouble) {
   }
 }
 
+TEST(SkippedWork, WhatFloatDecidesAmongFewBoxesIsNotComparedInDouble) {
+  std::vector<Box> row;  // one behind the other
+  for (int i = 0; i < 12; ++i) {
+    row.emplace_back(OrientedBox{{3.0 * i, 0.0, 0.0}, {1.0, 0.1, 0.2, 0.3}, {1.0, 1.0, 1.0}});
+  }
+  const Scene scene(row);
+  const Ray ray{{-5.0, 0.1, 0.1}, {1.0, 0.0, 0.0}};
+  EXPECT_EQ(workOf([&] { EXPECT_TRUE(scene.castAny(ray)); }).boxes, 0U);
+  EXPECT_EQ(workOf([&] {
+              EXPECT_FALSE(scene.isClear({{-5.0, 0.1, 0.1}, {5.0, 0.1, 0.1}}, 0.0));
+            }).boxes,
+            0U);
+  EXPECT_EQ(workOf([&] { EXPECT_EQ(scene.castClosest(ray).box, 0U); }).boxes, 1U);
+}
+
 TEST(SkippedWork, WhatDoubleDecidesIsNotDecidedExactly) {
   const Scene scene(turnedBoxes(2000));
   std::size_t hits = 0;

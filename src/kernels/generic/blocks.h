@@ -12,6 +12,12 @@
 // Together 18u S and what is left of second order: planes are moved outward by kBlock of each part
 // of S, so that what is computed begins before the exact entry and ends behind the exact exit. No
 // product overflows: |y| + e < 2^43, 1 / |R^T d| <= 2^60.
+//
+// Moved inward by kInBlock S, what is computed is certainly in the box, at any t: as long as
+// |t d|_2 <= 4 S, y is off by 6u S, t R^T d by 20u S, and the rest by 7u S and more that is of
+// second order, together 41u S with the rounding of e as a float. Farther away, the point at t is
+// at least 3 S from the center, along some axis at least 1.7 S, of which the computed one, off by a
+// few u of it and by t 2^-59, has more than e too: it is not taken for one in the box.
 
 /// Below it, |R^T d| is raised.
 constexpr float kFlattestInBlock = 0x1p-60F;
@@ -49,6 +55,11 @@ struct BlockRay {
   alignas(16) float direction[4];
   float pad;
   float end;
+
+  /// The same, not too late: see aboveInverseRoot().
+  float certainEnd() const {
+    return end * (1.0F - 0x1p-8F) - 2.0F * static_cast<float>(bounds::kFloatUnderflow);
+  }
 };
 
 /// @return whether the ray is a usual one
@@ -67,12 +78,20 @@ struct BlockRay {
   return true;
 }
 
-/// The slots from `first` on whose boxes the ray may meet between its begin and its end, a bit
-/// each, as many as there are lanes.
-/// @param near where it enters them, not too late
+/// Where a ray passes the planes of boxes, as far as what follows needs it.
 template <typename Lanes>
-static inline std::uint32_t meets(const BoxBlock& block, std::uint32_t first, const BlockRay& ray,
-                                  Lanes& near) {
+struct BlockTimes {
+  Lanes near;  ///< where it enters them, not too late
+  Lanes middle[3];
+  Lanes inverse[3];
+};
+
+/// The slots from `first` on whose boxes the ray may meet before its end, a bit each, as many as
+/// there are lanes.
+template <typename Lanes>
+[[gnu::always_inline]] static inline std::uint32_t meets(const BoxBlock& block, std::uint32_t first,
+                                                         const BlockRay& ray,
+                                                         BlockTimes<Lanes>& times) {
   const auto slots = [first](const float* all) { return loadLanes<Lanes>(all + first); };
   const Lanes pad = allLanes<Lanes>(ray.pad);
   Lanes w[3];
@@ -90,30 +109,37 @@ static inline std::uint32_t meets(const BoxBlock& block, std::uint32_t first, co
           multiplyAdd(slots(block.axis[i][1]), v[1], slots(block.axis[i][0]) * v[0]));
     };
     const Lanes slope = along(d);
-    const Lanes inverse =
+    times.inverse[i] =
         allLanes<Lanes>(1.0F) / larger(magnitude(slope), allLanes<Lanes>(kFlattestInBlock));
-    const Lanes middle = withSignOf(along(w), slope);
+    times.middle[i] = withSignOf(along(w), slope);
     const Lanes extent = slots(block.extent[i]) + pad;
-    nears[i] = (middle - extent) * inverse;
-    fars[i] = (middle + extent) * inverse;
+    nears[i] = (times.middle[i] - extent) * times.inverse[i];
+    fars[i] = (times.middle[i] + extent) * times.inverse[i];
   }
   // The end of the ray is the last that is known: a root and a quotient.
-  near = larger(larger(nears[0], nears[1]), larger(nears[2], allLanes<Lanes>(0.0F)));
+  times.near = larger(larger(nears[0], nears[1]), larger(nears[2], allLanes<Lanes>(0.0F)));
   const Lanes far = smaller(smaller(smaller(fars[0], fars[1]), fars[2]), allLanes<Lanes>(ray.end));
-  return notAbove(near, far);
+  return notAbove(times.near, far);
 }
 
-/// All boxes of a list that the ray may meet, a bit each.
-/// @param nears where it enters each, as far as it does
+/// Where a ray certainly is in boxes: from `enter`, not too soon, to `exit`, if that is not before.
 template <typename Lanes>
-[[gnu::always_inline]] static inline std::uint64_t meetsBlocks(const SceneView& view,
-                                                               const BlockRay& ray, float* nears) {
-  constexpr std::uint32_t kLanes = sizeof(Lanes) / sizeof(float);
-  std::uint64_t met = 0;
-  for (std::uint32_t first = 0; first < view.boxes_in_blocks; first += kLanes) {
-    Lanes near;
-    met |= std::uint64_t{meets(view.blocks[first / kSlots], first % kSlots, ray, near)} << first;
-    storeLanes(nears + first, near);
+struct CertainTimes {
+  Lanes enter;
+  Lanes exit;
+
+  [[gnu::always_inline]] CertainTimes(const BoxBlock& block, std::uint32_t first,
+                                      const BlockRay& ray, const BlockTimes<Lanes>& times) {
+    const auto ratio = static_cast<float>(bounds::kInBlock / bounds::kBlock);
+    const Lanes pad = allLanes<Lanes>(ray.pad * ratio);
+    Lanes nears[3];
+    Lanes fars[3];
+    for (int i = 0; i < 3; ++i) {
+      const Lanes extent = loadLanes<Lanes>(block.certain[i] + first) - pad;
+      nears[i] = (times.middle[i] - extent) * times.inverse[i];
+      fars[i] = (times.middle[i] + extent) * times.inverse[i];
+    }
+    enter = larger(larger(nears[0], nears[1]), larger(nears[2], allLanes<Lanes>(0.0F)));
+    exit = smaller(smaller(fars[0], fars[1]), fars[2]);
   }
-  return met;
-}
+};

@@ -81,6 +81,11 @@ static inline float smallestLane(Float16 a) {
   return smallestLane(Float8{_mm256_min_ps(_mm512_maskz_extractf32x8_ps(0xff, a.v, 0),
                                            _mm512_maskz_extractf32x8_ps(0xff, a.v, 1))});
 }
+/// a where a <= b, +inf elsewhere.
+static inline Float16 orInfinity(Float16 a, Float16 b) {
+  const __m512 infinity = _mm512_set1_ps(std::numeric_limits<float>::infinity());
+  return {_mm512_mask_mov_ps(infinity, _mm512_cmp_ps_mask(a.v, b.v, _CMP_LE_OQ), a.v)};
+}
 /// a but for one lane, which is +inf.
 static inline Float16 withInfinity(Float16 a, int lane) {
   const __m512 infinity = _mm512_set1_ps(std::numeric_limits<float>::infinity());

@@ -315,10 +315,20 @@ static inline Floats<kLanes> smaller(const Floats<kLanes>& a, const Floats<kLane
   return each<kLanes>([&](int i) { return a.v[i] < b.v[i] ? a.v[i] : b.v[i]; });
 }
 /// The smallest lane, where none is NaN.
-static inline float smallestLane(const Float16& a) {
-  const auto lesser = [](auto x, auto y) { return x < y ? x : y; };
-  const Quad four = lesser(lesser(a.v[0], a.v[1]), lesser(a.v[2], a.v[3]));
-  return lesser(lesser(four[0], four[1]), lesser(four[2], four[3]));
+template <int kLanes>
+static inline float smallestLane(const Floats<kLanes>& a) {
+  Quad least = a.v[0];
+  for (int i = 1; i < kLanes / 4; ++i) {
+    least = least < a.v[i] ? least : a.v[i];
+  }
+  const auto lesser = [](float x, float y) { return x < y ? x : y; };
+  return lesser(lesser(least[0], least[1]), lesser(least[2], least[3]));
+}
+/// a where a <= b, +inf elsewhere.
+template <int kLanes>
+static inline Floats<kLanes> orInfinity(const Floats<kLanes>& a, const Floats<kLanes>& b) {
+  const Quad infinity = fill(std::numeric_limits<float>::infinity());
+  return each<kLanes>([&](int i) { return a.v[i] <= b.v[i] ? a.v[i] : infinity; });
 }
 /// a but for one lane, which is +inf.
 static inline Float16 withInfinity(const Float16& a, int lane) {

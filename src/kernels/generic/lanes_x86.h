@@ -266,6 +266,11 @@ static inline Float8 smaller(Float8 a, Float8 b) {
 static inline std::uint32_t notAbove(Float8 a, Float8 b) {
   return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ)));
 }
+/// a where a <= b, +inf elsewhere.
+static inline Float8 orInfinity(Float8 a, Float8 b) {
+  const __m256 infinity = _mm256_set1_ps(std::numeric_limits<float>::infinity());
+  return {_mm256_blendv_ps(infinity, a.v, _mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ))};
+}
 /// a / sqrt(b) by Newton's method from an estimate, off by less than 8u of it.
 static inline Float8 overRoot(Float8 a, Float8 b) {
   const __m256 r = _mm256_rsqrt_ps(b.v);

@@ -76,6 +76,8 @@ class RayVisit {
 /// A search for the closest box.
 class ClosestVisit : public RayVisit {
  public:
+  static constexpr bool kAnyWillDo = false;
+
   ClosestVisit() = default;
   ClosestVisit(const SceneView& view, const RayQuery& query, Found& into, FloatRay& ray)
       : RayVisit(view, query, into, ray), end_s_(ray.end_s) {}
@@ -161,6 +163,8 @@ class ClosestVisit : public RayVisit {
 /// A search for any box.
 class AnyVisit : public RayVisit {
  public:
+  static constexpr bool kAnyWillDo = true;
+
   AnyVisit() = default;
   AnyVisit(const SceneView& view, const RayQuery& query, Found& into, FloatRay& ray)
       : RayVisit(view, query, into, ray), end_s_(ray.end_s) {}

@@ -69,26 +69,70 @@ static Answer searchList(const SceneView& view, const RayQuery& query, Found& fo
                                 : visitList<Visit>(view, query, found, ray, met, nears);
 }
 
+/// What is known in float of a ray among the boxes of blocks.
+struct AmongBlocks {
+  alignas(64) float nears[kMostInBlocks];  ///< where it enters each, as far as it does
+  std::uint64_t met[kRootWords];           ///< a bit for each that it may meet
+  float first_end;  ///< the first one is entered up to it: the end of the ray at most
+  bool is_met;      ///< certainly, any of them, within its range
+};
+
+/// @param Lanes the boxes that are compared at once
+template <typename Visit, typename Lanes>
+[[gnu::always_inline]] static inline void compareWithBlocks(const SceneView& view, bool is_masked,
+                                                            const BlockRay& ray,
+                                                            AmongBlocks& among) {
+  constexpr std::uint32_t kLanes = sizeof(Lanes) / sizeof(float);
+  among.first_end = ray.end;
+  among.is_met = false;
+  std::uint64_t met = 0;
+  for (std::uint32_t first = 0; first < view.boxes_in_blocks; first += kLanes) {
+    const BoxBlock& block = view.blocks[first / kSlots];
+    BlockTimes<Lanes> times;
+    const std::uint64_t bits = meets(block, first % kSlots, ray, times);
+    met |= bits << first;
+    storeLanes(among.nears + first, times.near);
+    // (Of one box the end of the ray is as good.)
+    const std::uint64_t enough = Visit::kAnyWillDo ? bits : bits & (bits - 1);
+    if (enough != 0 && !is_masked) {
+      const CertainTimes<Lanes> certain(block, first % kSlots, ray, times);
+      if constexpr (Visit::kAnyWillDo) {
+        const Lanes inside = allLanes<Lanes>(ray.certainEnd());
+        among.is_met = among.is_met || notAbove(certain.enter, smaller(certain.exit, inside)) != 0;
+      } else {
+        const float enter = smallestLane(orInfinity(certain.enter, certain.exit));
+        among.first_end = enter < among.first_end ? enter : among.first_end;
+      }
+    }
+  }
+  among.met[0] = met;
+  among.met[1] = 0;
+}
+
 /// The same where all boxes are in blocks.
 template <typename Visit>
 [[gnu::always_inline]] static inline Answer searchBlocks(const SceneView& view,
                                                          const RayQuery& query, Found& found,
                                                          const BlockRay& ray) {
-  alignas(64) float nears[kMostInBlocks];
+  AmongBlocks among;
   found.work->nodes += (view.boxes_in_blocks + kSlots - 1) / kSlots;
   // NOLINTBEGIN(misc-redundant-expression): with AVX-512 the lanes of a block are sixteen
-  const std::uint64_t met[kRootWords] = {view.boxes_in_blocks > 8
-                                             ? meetsBlocks<BlockLanes>(view, ray, nears)
-                                             : meetsBlocks<Float8>(view, ray, nears),
-                                         0};
+  if (view.boxes_in_blocks > 8) {
+    compareWithBlocks<Visit, BlockLanes>(view, query.mask != nullptr, ray, among);
+  } else {
+    compareWithBlocks<Visit, Float8>(view, query.mask != nullptr, ray, among);
+  }
   // NOLINTEND(misc-redundant-expression)
-  if (met[0] == 0) {
+  if (among.is_met) {
+    return Answer::kYes;
+  }
+  if (among.met[0] == 0) {
     return Answer::kNone;
   }
   FloatRay range;
   range.scale = 1.0;
-  range.setRange(0.0F, ray.end);
-  return visitList<Visit>(view, query, found, range, met, nears);
+  range.setRange(0.0F, among.first_end);
+  return visitList<Visit>(view, query, found, range, among.met, among.nears);
 }
 
 /// Visits the records of leaves that the ray may meet; four leaves are compared before any record
