@@ -119,6 +119,25 @@ TEST(SkippedWork, WhatFloatDecidesAmongFewBoxesIsNotComparedInDouble) {
   EXPECT_EQ(workOf([&] { EXPECT_EQ(scene.castClosest(ray).box, 0U); }).boxes, 1U);
 }
 
+TEST(SkippedWork, WhichOfTheBoxesThatARayStartsInComesFirstIsNotCompared) {
+  const std::vector<Box> nest = [] {
+    std::vector<Box> boxes;
+    for (int i = 0; i < 100; ++i) {
+      const double size = 1.0 + 0.01 * (i * 37 % 100);
+      boxes.emplace_back(OrientedBox{{0.0, 0.0, 0.0}, {1.0, 0.1, 0.2, 0.3}, {size, size, size}});
+    }
+    return boxes;
+  }();
+  const Scene scene(nest);
+  const QueryCounters work = workOf([&] {
+    const ClosestBox closest = scene.castClosest({{0.1, 0.2, 0.3}, {1.0, 0.0, 0.0}});
+    EXPECT_EQ(closest.box, 0U);
+    EXPECT_EQ(closest.t_upper, 0.0);
+  });
+  EXPECT_EQ(work.boxes, 100U);
+  EXPECT_EQ(work.certified_decisions + work.exact_decisions, 0U);
+}
+
 TEST(SkippedWork, WhatDoubleDecidesIsNotDecidedExactly) {
   const Scene scene(turnedBoxes(2000));
   std::size_t hits = 0;

@@ -103,6 +103,8 @@ class ClosestVisit : public RayVisit {
         found->count = 0;  // all others are later
         earliest_ = c.enter_lo;
       }
+    } else if (bound_ <= 0.0 && startsIn(c) && isAnotherAtStart(c.box)) {
+      return true;
     }
     if (isFull()) {
       makeRoom();
@@ -119,6 +121,22 @@ class ClosestVisit : public RayVisit {
 
  private:
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  static bool startsIn(const Candidate& c) { return c.certain && c.enter_hi <= 0.0; }
+
+  /// Of the boxes that the ray starts in, all of which are entered there, that of the lowest number
+  /// stands for all.
+  /// @return whether there is another
+  bool isAnotherAtStart(std::uint32_t box) {
+    for (int i = 0; i < found->count; ++i) {
+      Candidate& other = found->candidates[i];
+      if (startsIn(other)) {
+        other.box = box < other.box ? box : other.box;
+        return true;
+      }
+    }
+    return false;
+  }
 
   void shorten(double t) {
     bound_ = t;
