@@ -17,6 +17,8 @@
 #include "geometry/prepared_box.h"
 #include "kernels/kernels.h"
 
+#include <type_traits>
+
 namespace box_query {
 namespace {
 
@@ -195,26 +197,26 @@ std::optional<double> rounded(const double* x, double error) {
   return low == high ? std::optional<double>(low) : std::nullopt;
 }
 
-bool refineByKernel(const Segment& segment, const OrientedBox& box, const SegmentSlabs& slabs,
-                    const NearestGuess& guess, bool inside, kernels::Refined& refined) {
-  const auto by_kernel = kernels::active().refine;
-  return by_kernel != nullptr &&
-         by_kernel({box.orientation.coeffs().data(), box.center.data(), box.half_extents.data(),
-                    segment.start.data(), segment.end.data(), guess.t, guess.excess.data(),
-                    slabs.scale, inside},
-                   refined);
-}
-bool refineByKernel(const Segment&, const AlignedBox&, const SegmentSlabs&, const NearestGuess&,
-                    bool, kernels::Refined&) {
-  return false;
+/// Both, rounded, if that is certain.
+std::optional<RoundedDistance> roundedOf(const kernels::Refined& refined) {
+  const auto t = rounded(refined.t, refined.t_error);
+  const auto distance = rounded(refined.distance, refined.distance_error);
+  if (!t || (refined.inside && !(*t > 0.0 && *t < 1.0)) || !distance) {
+    return std::nullopt;
+  }
+  return RoundedDistance{*distance, *t};
 }
 
 /// One axis after the other.
-/// @return whether the box is taken
+/// @return whether the box is taken, and its sides are certain
 template <typename BoxType>
 bool refine(const Segment& segment, const BoxType& box, const SegmentSlabs& slabs,
-            const NearestGuess& guess, bool inside, kernels::Refined& refined) {
-  const bool at_end = !inside && guess.t == 1.0;
+            const NearestGuess& guess, kernels::Refined& refined) {
+  const double slope = dot(slabs.direction, guess.excess);
+  const bool at_start =
+      guess.t == 0.0 && (slope > slabs.slopeError() || segment.start == segment.end);
+  const bool at_end = guess.t == 1.0 && slope < -slabs.slopeError();
+  const bool inside = !at_start && !at_end;
   const WideFrame<BoxType> frame(segment, at_end ? segment.end : segment.start, box);
   const DoubleDouble n = frame.stretch();
   if (!isInRange(n)) {
@@ -245,35 +247,36 @@ bool refine(const Segment& segment, const BoxType& box, const SegmentSlabs& slab
       exact::fastTwoSum(root, (squared - stretched * stretched).hi * factor);
   const double error = (12.0 * eta * f.excess_sum + 8.0 * curvature_error * fall) * factor +
                        2.0 * bounds::kOperation * root;
-  refined = {change, {t.hi, t.lo}, t_error, {distance.hi, distance.lo}, error};
-  return true;
+  refined = {inside, {t.hi, t.lo}, t_error, {distance.hi, distance.lo}, error};
+  return sidesAreCertain(slabs, guess.t, guess.excess, change);
 }
 
 }  // namespace
+
+std::optional<RoundedDistance> refinedByKernel(const Segment& segment, const OrientedBox& box,
+                                               double t) {
+  kernels::Refined refined;
+  const auto by_kernel = kernels::active().refine;
+  if (by_kernel == nullptr ||
+      !by_kernel({box.orientation.coeffs().data(), box.center.data(), box.half_extents.data(),
+                  segment.start.data(), segment.end.data(), t},
+                 refined)) {
+    return std::nullopt;
+  }
+  return roundedOf(refined);
+}
 
 template <typename BoxType>
 std::optional<RoundedDistance> refinedDistance(const Segment& segment, const BoxType& box,
                                                const SegmentSlabs& slabs,
                                                const NearestGuess& guess) {
-  const double slope = dot(slabs.direction, guess.excess);
-  const bool at_start =
-      guess.t == 0.0 && (slope > slabs.slopeError() || segment.start == segment.end);
-  const bool at_end = guess.t == 1.0 && slope < -slabs.slopeError();
-  const bool inside = !at_start && !at_end;
+  if constexpr (std::is_same_v<BoxType, OrientedBox>) {
+    if (kernels::active().refine != nullptr) {
+      return refinedByKernel(segment, box, guess.t);
+    }
+  }
   kernels::Refined refined;
-  if (!refineByKernel(segment, box, slabs, guess, inside, refined) &&
-      !refine(segment, box, slabs, guess, inside, refined)) {
-    return std::nullopt;
-  }
-  if (!sidesAreCertain(slabs, guess.t, guess.excess, refined.change)) {
-    return std::nullopt;
-  }
-  const auto t = rounded(refined.t, refined.t_error);
-  const auto distance = rounded(refined.distance, refined.distance_error);
-  if (!t || (inside && !(*t > 0.0 && *t < 1.0)) || !distance) {
-    return std::nullopt;
-  }
-  return RoundedDistance{*distance, *t};
+  return refine(segment, box, slabs, guess, refined) ? roundedOf(refined) : std::nullopt;
 }
 
 template <typename BoxType>

@@ -23,6 +23,11 @@ std::optional<RoundedDistance> refinedDistance(const Segment& segment, const Box
                                                const SegmentSlabs& slabs,
                                                const NearestGuess& guess);
 
+/// The same from a parameter near the nearest point, even if it is no better than a float. Nothing
+/// also where the kernels leave it to others.
+std::optional<RoundedDistance> refinedByKernel(const Segment& segment, const OrientedBox& box,
+                                               double t);
+
 /// The smallest parameter within the radius, rounded down, from a guess of it.
 /// @pre slabs.isInRange(), radius > 0, the segment does not start within it but comes within it
 template <typename BoxType>

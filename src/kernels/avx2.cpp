@@ -44,6 +44,8 @@ namespace avx2 {
 #include "kernels/generic/tree_together.h"
 #include "kernels/generic/box_distance.h"
 #include "kernels/generic/nearest.h"
+#include "kernels/generic/leaf_distances.h"
+#include "kernels/generic/nearest_one.h"
 #include "kernels/generic/nearest_together.h"
 #include "kernels/generic/wide.h"
 #include "kernels/generic/cross.h"
@@ -60,6 +62,7 @@ const Kernels kAvx2 = {"avx2",
                        avx2::anyOfSegmentsTogether,
                        avx2::all,
                        avx2::nearest,
+                       avx2::nearestOne,
                        avx2::nearestTogether,
                        avx2::cross,
                        avx2::refine,

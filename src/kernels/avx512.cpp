@@ -45,6 +45,8 @@ namespace avx512 {
 #include "kernels/generic/tree_together.h"
 #include "kernels/generic/box_distance.h"
 #include "kernels/generic/nearest.h"
+#include "kernels/generic/leaf_distances.h"
+#include "kernels/generic/nearest_one.h"
 #include "kernels/generic/nearest_together.h"
 #include "kernels/generic/wide.h"
 #include "kernels/generic/cross.h"
@@ -61,6 +63,7 @@ const Kernels kAvx512 = {"avx512",
                          avx512::anyOfSegmentsTogether,
                          avx512::all,
                          avx512::nearest,
+                         avx512::nearestOne,
                          avx512::nearestTogether,
                          avx512::cross,
                          avx512::refine,

@@ -40,11 +40,21 @@ struct Kernels {
   void (*nearest)(const SceneView&, const SegmentQuery&, Approach approach, void* context,
                   Work& work);
 
-  /// The same of many segments, several of them at a time.
+  /// Says which box is the nearest, if that is clear, or else offers all that may be it. Null where
+  /// it is faster to offer all, and to go on from a double.
+  ///
+  /// @pre shrinks, no mask
+  /// @param one null where it is to be offered too
+  /// @return whether it is clear
+  bool (*nearest_one)(const SceneView&, const SegmentQuery&, Approach approach, void* context,
+                      NearestOne* one, Work& work);
+
+  /// The same of many segments, several of them at a time; some may have masks.
   ///
   /// @pre shrinks, of each
+  /// @param ones for those where it is clear; null where they are to be offered too
   void (*nearest_together)(const SceneView&, const SegmentQuery* queries, std::size_t count,
-                           ApproachEach approach, void* context, Work& work);
+                           ApproachEach approach, void* context, NearestOne* ones, Work& work);
 
   /// Where a component enters and leaves a box, if it is clear which faces it crosses there. Null
   /// where it is faster to work out one face after the other.
@@ -52,7 +62,7 @@ struct Kernels {
 
   /// Refines where a segment is nearest to a box. Null where it is faster to work out one axis
   /// after the other.
-  /// @return whether the box is taken
+  /// @return whether the box is taken, and its sides are certain
   bool (*refine)(const RefineQuery&, Refined&);
 
   /// Works out eight distances at once. Null where it is faster to do so one by one.

@@ -29,7 +29,6 @@ namespace portable {
 #include "kernels/generic/tree_together.h"
 #include "kernels/generic/box_distance.h"
 #include "kernels/generic/nearest.h"
-#include "kernels/generic/nearest_together.h"
 // clang-format on
 }  // namespace portable
 
@@ -41,7 +40,8 @@ const Kernels kPortable = {"portable",
                            portable::anyOfSegmentsTogether,
                            portable::all,
                            portable::nearest,
-                           portable::nearestTogether,
+                           nullptr,
+                           nullptr,
                            nullptr,
                            nullptr,
                            nullptr};

@@ -50,6 +50,15 @@ constexpr int kMostInBlocks = 48;
 /// Center and half extents of a box in a block: at most this far away.
 constexpr double kFarthestInBlocks = 0x1p40;
 
+/// The boxes of a leaf in float, relative to the center of the scene, all as oriented ones. The
+/// center of an empty slot is NaN.
+struct alignas(64) LeafBoxes {
+  float axis[3][3][kSlots];  ///< [axis of the box][coordinate][slot]
+  float center[3][kSlots];
+  float extent[3][kSlots];  ///< half extents
+  float error[kSlots];      ///< what it adds to that of a distance: see generic/leaf_distances.h
+};
+
 /// Nodes of one level: the children of node n are first[n], first[n] + 1, ... of the level below,
 /// of the lowest level records.
 struct Level {
@@ -70,6 +79,7 @@ struct SceneView {
   std::uint32_t boxes_in_blocks;
   /// Of a list of several nodes: slot n is around all of node n.
   const Bounds* around_nodes;
+  const LeafBoxes* leaves;  ///< of each node of the lowest level
   const BoxRecord* records;
   std::uint32_t num_records;
   /// Number of the box in the scene.
@@ -199,6 +209,13 @@ using Approach = double (*)(void* context, std::uint32_t box, const NearBox& nea
 using ApproachEach = double (*)(void* context, std::size_t query, std::uint32_t box,
                                 const NearBox& near);
 
+/// The nearest box, certainly apart from the segment, and a parameter near the one where it is
+/// nearest.
+struct NearestOne {
+  std::uint32_t box;
+  double t;
+};
+
 /// A component and an oriented box.
 ///
 /// @pre All numbers are compact (see bounds::kSmallest), the direction is not zero.
@@ -226,24 +243,19 @@ struct Crossing {
 
 enum class Crossed { kMiss, kHit, kUnclear };
 
-/// A segment that comes near an oriented box, and about where it does: see
-/// geometry/distance_filter.h.
+/// A segment that comes near an oriented box, and about where it is nearest.
 struct RefineQuery {
   const double* quaternion;  ///< x, y, z, w
   const double* center;
   const double* half_extents;
   const double* start;
   const double* end;
-  double t;             ///< near where it is nearest
-  const double* sides;  ///< the excess there, at least its signs
-  double scale;         ///< of the SegmentSlabs
-  bool inside;          ///< whether it may be nearest between its ends; or else t is one of them
+  double t;
 };
 
-/// Where a segment is nearest to a box and how near, each x[0] + x[1] within an error, if the
-/// excess keeps its sides on the way from the guess.
+/// Where a segment is nearest to a box and how near, each x[0] + x[1] within an error.
 struct Refined {
-  double change;  ///< how far it is from the guess
+  bool inside;  ///< or else it is certainly nearest at the start, or the end, where t is 0 or 1
   double t[2];
   double t_error;
   double distance[2];

@@ -125,4 +125,43 @@ std::vector<kernels::BoxBlock> blocksOf(const std::vector<kernels::BoxRecord>& r
   return blocks;
 }
 
+kernels::LeafBoxes emptyLeaf() {
+  kernels::LeafBoxes leaf = {};
+  for (std::size_t slot = 0; slot < kernels::kSlots; ++slot) {
+    clearSlot(leaf, slot);
+  }
+  return leaf;
+}
+
+void clearSlot(kernels::LeafBoxes& leaf, std::size_t slot) {
+  leaf.center[0][slot] = std::numeric_limits<float>::quiet_NaN();
+}
+
+void setSlot(kernels::LeafBoxes& leaf, std::size_t slot, const kernels::BoxRecord& box,
+             const double* scene_center) {
+  double size = 0.0;
+  double rounded = kernels::bounds::kFloatUnderflow;
+  for (int j = 0; j < 3; ++j) {
+    double middle = box.column[j][3];
+    double extent = box.extent[j];
+    for (int i = 0; i < 3; ++i) {
+      leaf.axis[i][j][slot] = static_cast<float>(box.column[j][i]);
+    }
+    if (box.isAligned()) {
+      middle = 0.5 * (box.column[0][j] + box.column[1][j]);
+      extent = 0.5 * (box.column[1][j] - box.column[0][j]);
+      for (int i = 0; i < 3; ++i) {
+        leaf.axis[i][j][slot] = i == j ? 1.0F : 0.0F;
+      }
+      rounded += 0x1p-50 * std::fabs(middle);  // at its own size
+    }
+    const double relative = middle - scene_center[j];
+    leaf.center[j][slot] = static_cast<float>(relative);
+    leaf.extent[j][slot] = static_cast<float>(extent);
+    size += std::fabs(relative) + extent;
+  }
+  leaf.error[slot] =
+      static_cast<float>((kernels::bounds::kLoss * size + rounded) * kernels::bounds::kUp);
+}
+
 }  // namespace box_query

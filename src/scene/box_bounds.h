@@ -7,6 +7,7 @@
 #include "scene/prepared_boxes.h"
 #include "scene/tree_partition.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace box_query {
@@ -31,5 +32,11 @@ kernels::BoxRecord recordOf(const PreparedBox& box);
 /// @pre every one is for the kernels
 std::vector<kernels::BoxBlock> blocksOf(const std::vector<kernels::BoxRecord>& records,
                                         const double* scene_center);
+
+/// Leaves without boxes.
+kernels::LeafBoxes emptyLeaf();
+void setSlot(kernels::LeafBoxes& leaf, std::size_t slot, const kernels::BoxRecord& record,
+             const double* scene_center);
+void clearSlot(kernels::LeafBoxes& leaf, std::size_t slot);
 
 }  // namespace box_query

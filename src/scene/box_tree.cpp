@@ -70,6 +70,7 @@ BoxTree::BoxTree(const SceneBoxes& boxes) {
   TreeBuilder builder(levels_, std::move(items));
   builder.build();
   addRecords(boxes, builder.items());
+  addLeaves();
   for (const TreeNodes& level : levels_) {
     built_nodes_.push_back(level.size());
   }
@@ -94,6 +95,19 @@ void BoxTree::addRecords(const SceneBoxes& boxes, const std::vector<Item>& items
     records_.push_back(recordOf(boxes.prepared(item.box)));
     has_aligned_ = has_aligned_ || records_.back().isAligned();
     box_of_record_.push_back(item.box);
+  }
+}
+
+/// Of nodes that have none yet.
+void BoxTree::addLeaves() {
+  const TreeNodes& nodes = levels_.front();
+  leaves_.reserve(nodes.size());
+  for (std::size_t node = leaves_.size(); node < nodes.size(); ++node) {
+    leaves_.push_back(emptyLeaf());
+    const std::size_t children = nodes.childrenOf(node, records_.size());
+    for (std::size_t slot = 0; slot < children; ++slot) {
+      setSlot(leaves_.back(), slot, records_[nodes.first[node] + slot], center_);
+    }
   }
 }
 
@@ -147,6 +161,7 @@ kernels::SceneView BoxTree::view() const {
   view.blocks = blocks_.data();
   view.boxes_in_blocks = static_cast<std::uint32_t>(blocks_.empty() ? 0 : records_.size());
   view.around_nodes = &around_nodes_;
+  view.leaves = leaves_.data();
   view.records = records_.data();
   view.num_records = static_cast<std::uint32_t>(records_.size());
   view.box_of_record = box_of_record_.data();

@@ -52,6 +52,7 @@ class BoxTree {
 
  private:
   void addRecords(const SceneBoxes& boxes, const std::vector<Item>& items);
+  void addLeaves();
   void measure();
   void dropAppended();
   bool moveBoxes(const SceneBoxes& boxes, const BoxChanges& changes);
@@ -59,7 +60,8 @@ class BoxTree {
 
   std::vector<TreeNodes> levels_;
   std::vector<kernels::BoxBlock> blocks_;
-  kernels::Bounds around_nodes_;  ///< of a list
+  kernels::Bounds around_nodes_;            ///< of a list
+  std::vector<kernels::LeafBoxes> leaves_;  ///< of the nodes of the lowest level
   std::vector<kernels::BoxRecord> records_;
   std::vector<std::uint32_t> box_of_record_;
   std::vector<std::uint32_t> left_out_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "exact/stage_counters.h"
 #include "geometry/distance_exact.h"
+#include "geometry/distance_points.h"
 #include "geometry/distance_query.h"
 #include "geometry/prepared_box.h"
 #include "geometry/solve.h"
@@ -91,11 +92,35 @@ bool Scene::isClear(const Segment& segment, double radius, const BoxMask* mask) 
 
 Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const noexcept {
   NearestBox nearest(segment, impl_->boxes);
-  impl_->forEachNear(segment, std::numeric_limits<double>::infinity(), true, mask,
-                     [&](std::size_t i, const DistanceBounds& bounds, const auto& estimate) {
-                       return nearest.offer(i, bounds, estimate);
-                     });
-  return nearest.clearance();
+  const auto offer = [&](std::size_t i, const DistanceBounds& bounds, const auto& estimate) {
+    return nearest.offer(i, bounds, estimate);
+  };
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  if (mask != nullptr || !impl_->tree.left_out().empty() || !isForKernels(segment, impl_->view) ||
+      impl_->kernels.refine == nullptr) {
+    impl_->forEachNear(segment, kInf, true, mask, offer);
+    return nearest.clearance();
+  }
+  const auto approach = [](void* to, std::uint32_t box, const kernels::NearBox& near) {
+    return static_cast<NearestBox*>(to)->offer(
+        std::size_t{box}, DistanceBounds{near.lower, near.upper}, [&] { return estimateOf(near); });
+  };
+  kernels::NearestOne one;
+  const bool is_one = impl_->kernels.nearest_one(impl_->view, nearestQuery(segment, nullptr),
+                                                 approach, &nearest, &one, work_of_thread);
+  if (!is_one) {
+    return nearest.clearance();
+  }
+  if (const auto* box = std::get_if<OrientedBox>(&impl_->boxes.simplest(one.box))) {
+    if (const auto refined = refinedByKernel(segment, *box, one.t)) {
+      SegmentDistance d;
+      d.distance = refined->distance;
+      d.t = refined->t;
+      setClosestPoints(segment, *box, d);
+      return {one.box, d.distance, d.t, d.on_segment, d.on_box};
+    }
+  }
+  return impl_->clearanceTo(segment, one.box);
 }
 
 Blockage Scene::Impl::firstMet(const Segment& segment, const BoxMask* mask) const {

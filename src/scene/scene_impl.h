@@ -68,6 +68,9 @@ struct Scene::Impl {
   void forEachNear(const Segment& segment, double bound, bool shrinks, const BoxMask* mask,
                    Visit&& visit) const;
 
+  /// Of a segment to a box that is known to be the nearest.
+  Clearance clearanceTo(const Segment& segment, std::size_t box) const;
+
   template <typename T>
   std::vector<BoxIntersection> findAll(const T& linear, const BoxMask* mask) const;
 

@@ -149,6 +149,15 @@ inline bool isForKernels(const Segment& segment, const kernels::SceneView& view)
   return near;
 }
 
+/// Asks for the nearest box.
+inline kernels::SegmentQuery nearestQuery(const Segment& segment, const BoxMask* mask) {
+  return {{segment.start[0], segment.start[1], segment.start[2]},
+          {segment.end[0], segment.end[1], segment.end[2]},
+          std::numeric_limits<double>::infinity(),
+          true,
+          mask != nullptr ? mask->words() : nullptr};
+}
+
 inline NearestEstimate estimateOf(const kernels::NearBox& near) {
   const auto three = [](const double* lanes) {
     return std::array<double, 3>{lanes[0], lanes[1], lanes[2]};

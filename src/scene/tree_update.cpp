@@ -63,6 +63,7 @@ std::optional<BoxTree> BoxTree::updated(const SceneBoxes& boxes, const BoxChange
       return std::nullopt;
     }
     tree.addRecords(boxes, builder.items());
+    tree.addLeaves();
   }
   tree.measure();
   if (!(tree.cost_ <= kWorse * built_cost_)) {
@@ -75,6 +76,7 @@ void BoxTree::dropAppended() {
   for (std::size_t level = 0; level < levels_.size(); ++level) {
     levels_[level].resize(built_nodes_[level]);
   }
+  leaves_.resize(built_nodes_.front());
   records_.resize(built_records_);
   box_of_record_.resize(built_records_);
 }
@@ -94,6 +96,7 @@ bool BoxTree::moveBoxes(const SceneBoxes& boxes, const BoxChanges& changes) {
       box = changes.now[box];
       if (box == BoxChanges::kGone) {
         setSlot(leaves.bounds[node], slot, FloatBounds());
+        clearSlot(leaves_[node], slot);
         continue;
       }
       if (!changes.is_new[box]) {
@@ -107,6 +110,7 @@ bool BoxTree::moveBoxes(const SceneBoxes& boxes, const BoxChanges& changes) {
       }
       setSlot(leaves.bounds[node], slot, bounds);
       records_[k] = recordOf(prepared);
+      setSlot(leaves_[node], slot, records_[k], center_);
       has_aligned_ = has_aligned_ || records_[k].isAligned();
     }
   }

@@ -41,6 +41,7 @@ bq_patch(src/exact/clip.h "if (!outside && order <= 0) {" "if (!outside && order
 bq_patch(src/exact/clip.h "if (enters >= 0) {" "if (enters >= (mutation.ties_name_one_face ? 1 : 0)) {")
 bq_patch(src/exact/clip.h "  return order != kUnknownSign;" "  return mutation.skip_exact_stage || order != kUnknownSign;")
 bq_patch(src/exact/estimate.h "return above == below &&" "return (mutation.skip_rounding_test || above == below) &&")
+bq_patch(src/geometry/distance_refine.cpp "if (kernels::active().refine !=" "if (!mutation.refine_by_axes && kernels::active().refine !=")
 bq_patch(src/geometry/solve.cpp "return meetsSlowly(" "return mutation.skip_slow_stages || meetsSlowly(")
 
 # Only what has changed is written, and compiled, again.

@@ -11,6 +11,7 @@ struct Mutation {
   bool skip_exact_stage = false;    ///< What double-double cannot tell is believed all the same.
   bool skip_slow_stages = false;    ///< What double cannot tell is called a hit.
   bool skip_rounding_test = false;  ///< What double-double has is rounded however close to a tie.
+  bool refine_by_axes = false;      ///< Distances are refined as without kernels, which is right.
 };
 
 inline Mutation mutation;

@@ -31,6 +31,7 @@ double distanceTo(const Segment& segment, const Box& any) {
 
 struct Counts {
   int apart = 0;  ///< segments that are nearest to a box at some distance
+  int ones = 0;   ///< segments for which floats say to which box
   std::size_t offered = 0;
   std::size_t close = 0;  ///< of the boxes offered, those whose bounds tell something
 };
@@ -87,6 +88,22 @@ void checkNearest(const kernels::Kernels& kernels, const std::vector<Box>& boxes
     EXPECT_TRUE(truth[i] > least || shrinking.offered.count(i) == 1) << "box " << i;
     EXPECT_TRUE(truth[i] > fixed.bound || fixed.offered.count(i) == 1) << "box " << i;
   }
+  if (kernels.nearest_one != nullptr) {
+    Search several{boxes, segment, true, kInf, {}, 0};
+    kernels::NearestOne one;
+    const kernels::SegmentQuery query = querySegment(kInf, true);
+    const bool is_one = kernels.nearest_one(view, query, offer, &several, &one, work);
+    Search every{boxes, segment, true, kInf, {}, 0};
+    EXPECT_FALSE(kernels.nearest_one(view, query, offer, &every, nullptr, work));
+    EXPECT_TRUE(!is_one || least > 0.0);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (!std::isinf(truth[i]) && truth[i] == least) {
+        EXPECT_TRUE(is_one ? one.box == i : several.offered.count(i) == 1) << "box " << i;
+        EXPECT_EQ(1U, every.offered.count(i)) << "box " << i;
+      }
+    }
+    counts.ones += is_one ? 1 : 0;
+  }
   counts.apart += least > 0.0 ? 1 : 0;
   counts.offered += shrinking.offered.size();
   counts.close += shrinking.close;
@@ -105,6 +122,7 @@ TEST_P(NearestKernelTest, OfferTheNearestInHostileScenes) {
     }
   }
   EXPECT_GT(counts.apart, asked / 10);
+  EXPECT_GT(counts.ones, GetParam()->nearest_one != nullptr ? asked / 20 : -1);
   EXPECT_GT(10 * counts.close, 9 * counts.offered);
 }
 
@@ -154,6 +172,10 @@ struct ManySearches {
 };
 
 TEST_P(NearestKernelTest, OfferTheNearestOfManySegments) {
+  if (GetParam()->nearest_together == nullptr) {
+    return;  // this kernel leaves it to others
+  }
+  int num_ones = 0;
   for (const std::size_t count : {1, 16, 17, 100, 129, 2500}) {
     Random random(22, count, 0);
     const std::vector<Box> boxes = scattered(random, count, 6.0);
@@ -181,7 +203,12 @@ TEST_P(NearestKernelTest, OfferTheNearestOfManySegments) {
       ManySearches searches{boxes, segments, std::vector<double>(num_segments, kInf)};
       kernels::Work work;
       GetParam()->nearest_together(view, queries.data(), num_segments, ManySearches::offer,
-                                   &searches, work);
+                                   &searches, nullptr, work);
+      ManySearches others{boxes, segments, std::vector<double>(num_segments, kInf)};
+      constexpr std::uint32_t kNone = ~std::uint32_t{0};
+      std::vector<kernels::NearestOne> ones(num_segments, {kNone, 0.0});
+      GetParam()->nearest_together(view, queries.data(), num_segments, ManySearches::offer, &others,
+                                   ones.data(), work);
       for (std::size_t k = 0; k < num_segments; ++k) {
         double least = kInf;
         for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -190,9 +217,13 @@ TEST_P(NearestKernelTest, OfferTheNearestOfManySegments) {
           }
         }
         EXPECT_EQ(least, searches.bounds[k]) << "segment " << k << " among " << count << " boxes";
+        const bool is_one = ones[k].box != kNone;
+        EXPECT_EQ(least, is_one ? distanceTo(segments[k], boxes[ones[k].box]) : others.bounds[k]);
+        num_ones += is_one ? 1 : 0;
       }
     }
   }
+  EXPECT_GT(num_ones, 200);
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, NearestKernelTest, testing::ValuesIn(allKernels()), nameOf);

@@ -116,7 +116,15 @@ TEST(Mutations, ShrunkBoundsOfDistancesAreNoticed) {
   EXPECT_GT(wrongDistances("rounded_axis", 2000), 0U);
 }
 
+TEST(Mutations, ShrunkBoundsOfRefinedDistancesAreNoticed) {
+  const Spoilt<double> spoilt(bounds::kRow, bounds::kRow / 1024);
+  EXPECT_GT(wrongDistances("origin_on_box", 4000), 0U);
+}
+
+// What follows about slopes is of one axis after the other, as without kernels.
 TEST(Mutations, AShrunkBoundOfTheSlopeOfDistancesIsNoticed) {
+  const Spoilt<bool> by_axes(mutation.refine_by_axes, true);
+  EXPECT_EQ(wrongDistances("rounded_axis", 3000), 0U);
   const Spoilt<double> spoilt(bounds::kSlope, 0.0);
   EXPECT_GT(wrongDistances("rounded_axis", 3000), 0U);
 }
@@ -137,6 +145,7 @@ TEST(Mutations, ScalesTooSmallForDistancesAreNoticed) {
 }
 
 TEST(Mutations, SegmentsTooShortForTheFrameOfABoxAreNoticed) {
+  const Spoilt<bool> by_axes(mutation.refine_by_axes, true);
   const Spoilt<double> spoilt(bounds::kShortestDirection, 0.0);
   EXPECT_GT(wrongDistances("stage_limits", 8000), 0U);
 }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -136,6 +137,31 @@ TEST(SkippedWork, WhichOfTheBoxesThatARayStartsInComesFirstIsNotCompared) {
   });
   EXPECT_EQ(work.boxes, 100U);
   EXPECT_EQ(work.certified_decisions + work.exact_decisions, 0U);
+}
+
+TEST(SkippedWork, WhereFloatSaysWhichBoxIsNearestDoubleIsNotAsked) {
+  if (std::string(activeKernels()) == "portable") {
+    GTEST_SKIP() << "which does not go on from a float";
+  }
+  for (const std::size_t count : {10U, 100U, 5000U}) {
+    const Scene scene(turnedBoxes(count));
+    std::vector<Segment> segments;
+    for (const Ray& ray : raysAmong(count)) {
+      segments.push_back({ray.origin, ray.origin + ray.direction});
+    }
+    std::vector<Clearance> clearances(segments.size());
+    std::size_t apart = 0;
+    const QueryCounters one_by_one = workOf([&] {
+      for (const Segment& segment : segments) {
+        apart += scene.clearance(segment).distance > 0.0 ? 1 : 0;
+      }
+    });
+    const QueryCounters together =
+        workOf([&] { scene.clearance(segments.data(), segments.size(), clearances.data()); });
+    EXPECT_GT(apart, kRays / 2);
+    EXPECT_LT(one_by_one.boxes, 3 * (kRays - apart) + kRays / 10) << count;
+    EXPECT_LT(together.boxes, 3 * (kRays - apart) + kRays / 10) << count;
+  }
 }
 
 TEST(SkippedWork, WhatDoubleDecidesIsNotDecidedExactly) {

@@ -94,6 +94,11 @@ static inline std::uint32_t notAbove(Float16 a, Float16 b) {
   return static_cast<std::uint32_t>(lo) | (static_cast<std::uint32_t>(hi) << 8);
 }
 
+static inline float lane(Float16 a, int i) {
+  const __m256i at = _mm256_set1_epi32(i % 8);
+  return _mm256_cvtss_f32(_mm256_permutevar8x32_ps(i < 8 ? a.lo : a.hi, at));
+}
+
 /// The slots of eight bits, in order, for every value of the bits.
 struct SlotTable {
   std::uint8_t slots[256][8];

@@ -96,6 +96,10 @@ static inline std::uint32_t notAbove(Float16 a, Float16 b) {
   return _mm512_cmp_ps_mask(a.v, b.v, _CMP_LE_OQ);
 }
 
+static inline float lane(Float16 a, int i) {
+  return _mm512_cvtss_f32(_mm512_maskz_permutexvar_ps(kAllLanes, _mm512_set1_epi32(i), a.v));
+}
+
 /// Appends `base` + slot for every slot of `bits`. Up to kSlots entries behind the last one are
 /// written to.
 static inline int append(std::uint32_t bits, std::uint32_t base, std::uint32_t* list, int count) {

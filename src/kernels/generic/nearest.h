@@ -18,6 +18,7 @@ struct FloatSegment {
   float direction[3];
   float slack;
   float squared_length;
+  float minus_inverse;
 
   FloatSegment() = default;
   FloatSegment(const SceneView& view, const SegmentQuery& query) : squared_length(0.0F) {
@@ -28,6 +29,8 @@ struct FloatSegment {
       squared_length += direction[i] * direction[i];
       size += std::fabs(origin[i]) + std::fabs(direction[i]);
     }
+    minus_inverse =
+        -1.0F / (squared_length + static_cast<float>(bounds::kShortest * bounds::kShortest));
     slack = size * static_cast<float>(bounds::kLoss) + 2.0F * static_cast<float>(bounds::kShortest);
   }
 };
@@ -280,7 +283,6 @@ static void searchAfterSteps(const SceneView& view, const SegmentQuery& query,
 
 static void nearest(const SceneView& view, const SegmentQuery& query, Approach approach,
                     void* context, Work& work) {
-  work = Work();
   if (view.depth > 0) {
     const FloatSegment segment(view, query);
     const auto free = static_cast<float>(view.mean_free_path);

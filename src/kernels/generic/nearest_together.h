@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many segments down one tree, each to the box that is nearest to it. First all go straight to a
-// box, by way of the nearest nodes, a level at a time: what one waits for comes from memory while
+// leaf, by way of the nearest nodes, a level at a time: what one waits for comes from memory while
 // others are compared, and nothing branches on what was compared. Then what of the nodes that were
 // passed by may be nearer still makes one list a level, of all segments.
 
@@ -12,8 +12,8 @@ struct NearCompanion {
   const SegmentQuery* query;
   std::size_t number;
   FloatSegment segment;
-  float bound;
-  std::uint32_t at;  ///< the node, or the record, that it goes to
+  NearestList list;
+  std::uint32_t at;  ///< the node that it goes to
   int lowest;        ///< the lowest level where it was at a node
   std::uint32_t node[kMaxLevels + 1];
   /// Lower bounds of the slots that it passed by, of roots and of each node below.
@@ -23,12 +23,14 @@ struct NearCompanion {
 
 class NearestTogether {
  public:
-  NearestTogether(const SceneView& view, ApproachEach approach, void* context, Work& work)
+  NearestTogether(const SceneView& view, ApproachEach approach, void* context, NearestOne* ones,
+                  Work& work)
       : view_(view),
         top_(view.depth_together - 1),
         roots_(static_cast<int>(view.levels[top_].nodes)),
         approach_(approach),
         context_(context),
+        ones_(ones),
         work_(work) {}
 
   bool isFull() const { return count_ == kSegmentsTogether; }
@@ -37,14 +39,31 @@ class NearestTogether {
     c.query = &query;
     c.number = number;
     c.segment = segment;
-    c.bound = boundInFloat(query.bound);
+    c.list.clear();
   }
 
   void run() {
+    if (top_ == 0) {
+      for (int k = 0; k < count_; ++k) {
+        for (int n = 0; n < roots_; ++n) {
+          visit(segments_[k], static_cast<std::uint32_t>(n));
+        }
+      }
+    } else {
+      goDown();
+    }
+    for (int k = 0; k < count_; ++k) {
+      finish(segments_[k]);
+    }
+    count_ = 0;
+  }
+
+ private:
+  void goDown() {
     for (int k = 0; k < count_; ++k) {
       passRoots(segments_[k]);
     }
-    for (int level = top_ - 1; level >= 0; --level) {
+    for (int level = top_ - 1; level > 0; --level) {
       for (int k = 0; k < count_; ++k) {
         if (segments_[k].lowest == level + 1) {
           passNode(segments_[k], level);
@@ -52,22 +71,26 @@ class NearestTogether {
       }
     }
     for (int k = 0; k < count_; ++k) {
-      if (segments_[k].lowest == 0) {
+      if (segments_[k].lowest == 1) {
         visit(segments_[k], segments_[k].at);
       }
     }
-    for (int level = 0; level <= top_; ++level) {
+    for (int level = 1; level <= top_; ++level) {
       lookBack(level);
     }
-    count_ = 0;
   }
 
- private:
   void fetch(int level, std::uint32_t child) const {
-    if (level == 0) {
-      const BoxRecord& record = view_.records[child];
-      prefetch(&record);
-      prefetch(&record.column[2]);
+    if (level == 1) {
+      const LeafBoxes& leaf = view_.leaves[child];
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+          prefetch(leaf.axis[i][j]);
+        }
+        prefetch(leaf.center[i]);
+        prefetch(leaf.extent[i]);
+      }
+      prefetch(leaf.error);
     } else {
       const Bounds& bounds = view_.levels[level - 1].bounds[child];
       for (int i = 0; i < 3; ++i) {
@@ -128,10 +151,11 @@ class NearestTogether {
     const std::uint32_t* first = view_.levels[level].first;
     for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count_); ++k) {
       const NearCompanion& c = segments_[k];
+      const Float16 bound = all16(c.list.bound());
       const auto listNear = [&](std::uint32_t node, const float* waiting) {
         const Float16 lower = load16(waiting);
-        listed = append(notAbove(lower, all16(c.bound)), first[node] | (k << kNumberBits), lower,
-                        list, nears, listed);
+        listed = append(notAbove(lower, bound), first[node] | (k << kNumberBits), lower, list,
+                        nears, listed);
       };
       if (level < top_ && c.lowest <= level) {
         listNear(c.node[level], c.below[level]);
@@ -145,15 +169,18 @@ class NearestTogether {
 
   /// Looks at children of a level.
   void goOn(int level, const std::uint32_t* children, const float* nears, int count) {
-    if (level == 0) {
-      for (int i = 0; i < count; ++i) {
-        NearCompanion& c = segments_[children[i] >> kNumberBits];
-        if (nears[i] <= c.bound) {
-          visit(c, children[i] & kLargestNumber);
-        }
-      }
-    } else {
+    if (level > 1) {
       descend(level - 1, children, nears, count);
+      return;
+    }
+    for (int i = 0; i < count; ++i) {
+      if (i + 1 < count) {
+        fetch(1, children[i + 1] & kLargestNumber);
+      }
+      NearCompanion& c = segments_[children[i] >> kNumberBits];
+      if (nears[i] <= c.list.bound()) {
+        visit(c, children[i] & kLargestNumber);
+      }
     }
   }
 
@@ -167,12 +194,12 @@ class NearestTogether {
       }
       const std::uint32_t node = nodes[i] & kLargestNumber;
       const NearCompanion& c = segments_[nodes[i] >> kNumberBits];
-      if (!(nears[i] <= c.bound)) {
+      if (!(nears[i] <= c.list.bound())) {
         continue;
       }
       ++work_.nodes;
       const Float16 lower = LaneSegment<0>(c.segment).distances(view_.levels[level].bounds[node]);
-      listed = append(notAbove(lower, all16(c.bound)),
+      listed = append(notAbove(lower, all16(c.list.bound())),
                       view_.levels[level].first[node] | (nodes[i] & ~kLargestNumber), lower, list,
                       nears_below, listed);
       if (listed > kListedTogether - kSlots) {
@@ -185,14 +212,23 @@ class NearestTogether {
     }
   }
 
-  void visit(NearCompanion& c, std::uint32_t record) {
-    ++work_.boxes;
-    work_.turned_boxes += view_.records[record].isAligned() ? 0 : 1;
-    NearBox near;
-    estimate(view_.records[record], *c.query, near);
-    const double bound = approach_(context_, c.number, view_.box_of_record[record], near);
-    const float up = boundInFloat(bound);
-    c.bound = up < c.bound ? up : c.bound;
+  void visit(NearCompanion& c, std::uint32_t leaf) {
+    ++work_.nodes;
+    c.list.add(view_, c.segment, leaf);
+  }
+
+  void finish(NearCompanion& c) {
+    struct One {
+      ApproachEach approach;
+      void* context;
+      std::size_t number;
+    } one{approach_, context_, c.number};
+    const auto approach = [](void* to, std::uint32_t box, const NearBox& near) {
+      const One& o = *static_cast<const One*>(to);
+      return o.approach(o.context, o.number, box, near);
+    };
+    decide(view_, *c.query, c.list, approach, &one, ones_ != nullptr ? ones_ + c.number : nullptr,
+           work_);
   }
 
   const SceneView& view_;
@@ -200,19 +236,19 @@ class NearestTogether {
   int roots_;
   ApproachEach approach_;
   void* context_;
+  NearestOne* ones_;
   Work& work_;
   int count_ = 0;
   NearCompanion segments_[kSegmentsTogether];
 };
 
 static void nearestTogether(const SceneView& view, const SegmentQuery* queries, std::size_t count,
-                            ApproachEach approach, void* context, Work& work) {
-  work = Work();
+                            ApproachEach approach, void* context, NearestOne* ones, Work& work) {
   if (view.depth == 0) {
     return;
   }
   const bool is_short_enough = view.levels[0].nodes <= kLargestNumber / kSlots;
-  NearestTogether together(view, approach, context, work);
+  NearestTogether together(view, approach, context, ones, work);
   for (std::size_t i = 0; i < count; ++i) {
     const FloatSegment segment(view, queries[i]);
     if (is_short_enough && queries[i].mask == nullptr && isShort(view, segment)) {
@@ -232,11 +268,11 @@ static void nearestTogether(const SceneView& view, const SegmentQuery* queries, 
       const One& o = *static_cast<const One*>(to);
       return o.approach(o.context, o.number, box, near);
     };
-    Work alone;
-    nearest(view, queries[i], approachOne, &one, alone);
-    work.nodes += alone.nodes;
-    work.boxes += alone.boxes;
-    work.turned_boxes += alone.turned_boxes;
+    if (queries[i].mask == nullptr) {
+      nearestOne(view, queries[i], approachOne, &one, ones != nullptr ? ones + i : nullptr, work);
+    } else {
+      nearest(view, queries[i], approachOne, &one, work);
+    }
   }
   together.run();
 }

@@ -1,15 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The distances of eight segments, each from an oriented box of its own, correctly rounded, with
 // the points: the steps of generic/refine.h, a pair in each lane instead of an axis.
-//
-// All that it is told is a parameter t near the nearest point. Which faces the segment is outside
-// of there it sees for itself, and takes no pair that may have other sides on the way to the
-// nearest point: an excess moves by |change v_i|, and is off by 2.4 eta, and where the middle of
-// the box is so close that it is taken from the wrong side, it says inside if 2.4 eta lie between
-// the middle and the face. Nor does it take one where no double is certain.
-//
-// In terms of generic/refine.h, eta = 128u^2 n (S + E + D) bounds what a start seen from a face and
-// a direction are off by, and g is within 3 eta (|v|_1 + |ex|_1).
 
 /// A box stretched by n = |q|^2: axis[i][j] is coordinate j of axis i.
 struct StretchedBoxes {

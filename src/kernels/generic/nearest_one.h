@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The box that is nearest to a segment: down the tree to the nearest leaf, and to all others that
+// may have a nearer box, where floats say which boxes may be the nearest. If it is one, that is it;
+// if there are more, double says.
+
+/// Boxes of leaves that may be the nearest one.
+class NearestList {
+ public:
+  void clear() {
+    bound_ = std::numeric_limits<float>::max();
+    lower_ = 0.0F;
+    is_full_ = false;
+    count_ = 0;
+  }
+  float bound() const { return bound_; }
+
+  void add(const SceneView& view, const FloatSegment& segment, std::uint32_t node) {
+    const LeafDistances distances = leafDistances(view.leaves[node], segment);
+    const std::uint32_t first = view.levels[0].first[node];
+    const float nearest = smallestLane(distances.upper);
+    if (nearest < bound_) {
+      bound_ = nearest;
+      const int slot = lowestBit(notAbove(distances.upper, all16(nearest)));
+      best_ = first + static_cast<std::uint32_t>(slot);
+      t_ = lane(distances.t, slot);
+      lower_ = lane(distances.lower, slot);
+    }
+    if (count_ > kCapacity - kSlots) {
+      tidy();
+    }
+    if (count_ <= kCapacity - kSlots) {
+      count_ = append(notAbove(distances.lower, all16(bound_)), first, distances.lower, list_,
+                      nears_, count_);
+    } else {
+      is_full_ = true;
+    }
+  }
+
+  /// Leaves those that may be the nearest.
+  void tidy() {
+    int kept = 0;
+    for (int i = 0; i < count_; ++i) {
+      list_[kept] = list_[i];
+      nears_[kept] = nears_[i];
+      kept += nears_[i] <= bound_ ? 1 : 0;
+    }
+    count_ = kept;
+  }
+
+  /// After tidy(), whether one is the nearest, certainly, and is not met.
+  bool isOne() const { return count_ == 1 && lower_ > 0.0F && !is_full_; }
+  std::uint32_t best() const { return best_; }
+  float t() const { return t_; }
+  bool isFull() const { return is_full_; }
+  int count() const { return count_; }
+  std::uint32_t record(int i) const { return list_[i]; }
+  float lower(int i) const { return nears_[i]; }
+
+ private:
+  static constexpr int kCapacity = 64;
+
+  float bound_;
+  float lower_;  ///< of the one of the least upper bound, and more of it
+  float t_;
+  std::uint32_t best_;
+  bool is_full_;
+  int count_;
+  alignas(64) std::uint32_t list_[kCapacity + kSlots];
+  alignas(64) float nears_[kCapacity + kSlots];
+};
+
+template <int kSteps>
+class NearestOneSearch {
+ public:
+  NearestOneSearch(const SceneView& view, const FloatSegment& segment, Work& work)
+      : view_(view), segment_(segment), lanes_(segment), work_(work) {
+    list_.clear();
+  }
+
+  NearestList& run() {
+    const int top = view_.depth_together - 1;
+    const std::uint32_t roots = view_.levels[top].nodes;
+    if (top == 0) {
+      for (std::uint32_t root = 0; root < roots; ++root) {
+        visit(root);
+      }
+    } else if (roots == 1) {
+      searchNode(top, 0);
+    } else {
+      searchRoots(top, static_cast<int>(roots));
+    }
+    return list_;
+  }
+
+ private:
+  Float16 lowerBounds(int level, std::uint32_t node) {
+    ++work_.nodes;
+    return smaller(lanes_.distances(view_.levels[level].bounds[node]),
+                   all16(std::numeric_limits<float>::infinity()));
+  }
+  void visit(std::uint32_t leaf) {
+    ++work_.nodes;
+    list_.add(view_, segment_, leaf);
+  }
+  void goTo(int level, std::uint32_t child) {
+    if (level > 1) {
+      searchNode(level - 1, child);
+    } else {
+      visit(child);
+    }
+  }
+
+  void searchNode(int level, std::uint32_t node) {
+    Float16 waiting = lowerBounds(level, node);
+    while (true) {
+      const float nearest = smallestLane(waiting);
+      if (!(nearest <= list_.bound())) {
+        return;
+      }
+      const int slot = lowestBit(notAbove(waiting, all16(nearest)));
+      waiting = withInfinity(waiting, slot);
+      goTo(level, view_.levels[level].first[node] + static_cast<std::uint32_t>(slot));
+    }
+  }
+
+  void searchRoots(int level, int roots) {
+    alignas(64) float waiting[kMostRootNodes * kSlots];
+    for (int i = 0; i < roots; ++i) {
+      store16(waiting + i * kSlots, lowerBounds(level, static_cast<std::uint32_t>(i)));
+    }
+    while (true) {
+      Float16 least = load16(waiting);
+      for (int i = 1; i < roots; ++i) {
+        least = smaller(least, load16(waiting + i * kSlots));
+      }
+      const float nearest = smallestLane(least);
+      if (!(nearest <= list_.bound())) {
+        return;
+      }
+      float* at = waiting;
+      while (notAbove(load16(at), all16(nearest)) == 0) {
+        at += kSlots;
+      }
+      const int slot = lowestBit(notAbove(load16(at), all16(nearest)));
+      store16(at, withInfinity(load16(at), slot));
+      const auto root = static_cast<std::uint32_t>((at - waiting) / kSlots);
+      goTo(level, view_.levels[level].first[root] + static_cast<std::uint32_t>(slot));
+    }
+  }
+
+  const SceneView& view_;
+  const FloatSegment& segment_;
+  const LaneSegment<kSteps> lanes_;
+  Work& work_;
+  NearestList list_;
+};
+
+/// Offers what is left of a list.
+static void offerListed(const SceneView& view, const SegmentQuery& query, const NearestList& list,
+                        Approach approach, void* context, Work& work) {
+  float bound = list.bound();
+  for (int i = 0; i < list.count(); ++i) {
+    if (list.lower(i) <= bound) {
+      const std::uint32_t record = list.record(i);
+      ++work.boxes;
+      work.turned_boxes += view.records[record].isAligned() ? 0 : 1;
+      NearBox near;
+      estimate(view.records[record], query, near);
+      const float next = boundInFloat(approach(context, view.box_of_record[record], near));
+      bound = next < bound ? next : bound;
+    }
+  }
+}
+
+/// Says which is the nearest, or offers all that may be.
+static bool decide(const SceneView& view, const SegmentQuery& query, NearestList& list,
+                   Approach approach, void* context, NearestOne* one, Work& work) {
+  list.tidy();
+  if (list.isOne() && one != nullptr) {
+    *one = {view.box_of_record[list.best()], list.t()};
+    return true;
+  }
+  if (list.isFull()) {
+    nearest(view, query, approach, context, work);
+  } else {
+    offerListed(view, query, list, approach, context, work);
+  }
+  return false;
+}
+
+template <int kSteps>
+static bool nearestOneAfterSteps(const SceneView& view, const SegmentQuery& query,
+                                 const FloatSegment& segment, Approach approach, void* context,
+                                 NearestOne* one, Work& work) {
+  NearestOneSearch<kSteps> search(view, segment, work);
+  return decide(view, query, search.run(), approach, context, one, work);
+}
+
+/// Leaves of so many boxes are not in cache: all of one takes longer to come from memory than the
+/// bounds of its boxes, and the record of one or two.
+constexpr std::uint32_t kInCache = 32768;
+
+static bool nearestOne(const SceneView& view, const SegmentQuery& query, Approach approach,
+                       void* context, NearestOne* one, Work& work) {
+  if (view.depth == 0) {
+    return false;
+  }
+  if (view.num_records > kInCache) {
+    nearest(view, query, approach, context, work);
+    return false;
+  }
+  const FloatSegment segment(view, query);
+  const auto free = static_cast<float>(view.mean_free_path);
+  if (isShort(view, segment)) {
+    return nearestOneAfterSteps<0>(view, query, segment, approach, context, one, work);
+  }
+  if (segment.squared_length < 2.0F * free * free) {
+    return nearestOneAfterSteps<1>(view, query, segment, approach, context, one, work);
+  }
+  return nearestOneAfterSteps<3>(view, query, segment, approach, context, one, work);
+}
