@@ -72,6 +72,10 @@ static inline Float16 larger(Float16 a, Float16 b) {
 static inline Float16 smaller(Float16 a, Float16 b) {
   return {_mm256_min_ps(a.lo, b.lo), _mm256_min_ps(a.hi, b.hi)};
 }
+/// Lanes of b where `negative` is, of a elsewhere; as they are, whatever they stand for.
+static inline Float16 choose(Float16 a, Float16 b, Float16 negative) {
+  return {_mm256_blendv_ps(a.lo, b.lo, negative.lo), _mm256_blendv_ps(a.hi, b.hi, negative.hi)};
+}
 /// The smallest lane, where none is NaN.
 static inline float smallestLane(Float16 a) {
   return smallestLane(Float8{_mm256_min_ps(a.lo, a.hi)});

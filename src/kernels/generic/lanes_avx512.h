@@ -81,6 +81,10 @@ static inline float smallestLane(Float16 a) {
   return smallestLane(Float8{_mm256_min_ps(_mm512_maskz_extractf32x8_ps(0xff, a.v, 0),
                                            _mm512_maskz_extractf32x8_ps(0xff, a.v, 1))});
 }
+/// Lanes of b where `negative` is, of a elsewhere; as they are, whatever they stand for.
+static inline Float16 choose(Float16 a, Float16 b, Float16 negative) {
+  return {_mm512_mask_mov_ps(a.v, _mm512_movepi32_mask(_mm512_castps_si512(negative.v)), b.v)};
+}
 /// a where a <= b, +inf elsewhere.
 static inline Float16 orInfinity(Float16 a, Float16 b) {
   const __m512 infinity = _mm512_set1_ps(std::numeric_limits<float>::infinity());

@@ -220,10 +220,6 @@ static inline float smallestOf3(const Float4& a) {
 static inline float firstLane(const Float4& a) {
   return a.v[0][0];
 }
-/// Lanes of b where `negative` is, of a elsewhere.
-static inline Float4 choose(const Float4& a, const Float4& b, const Float4& negative) {
-  return {{bitsOf(negative.v[0]) < 0 ? b.v[0] : a.v[0]}};
-}
 /// A bit for every lane in which the sign is set.
 static inline std::uint32_t signsOf(const Float4& a) {
   const Int4 bits = (bitsOf(a.v[0]) < 0) & Int4{1, 2, 4, 8};
@@ -323,6 +319,12 @@ static inline float smallestLane(const Floats<kLanes>& a) {
   }
   const auto lesser = [](float x, float y) { return x < y ? x : y; };
   return lesser(lesser(least[0], least[1]), lesser(least[2], least[3]));
+}
+/// Lanes of b where `negative` is, of a elsewhere; as they are, whatever they stand for.
+template <int kLanes>
+static inline Floats<kLanes> choose(const Floats<kLanes>& a, const Floats<kLanes>& b,
+                                    const Floats<kLanes>& negative) {
+  return each<kLanes>([&](int i) { return bitsOf(negative.v[i]) < 0 ? b.v[i] : a.v[i]; });
 }
 /// a where a <= b, +inf elsewhere.
 template <int kLanes>

@@ -5,9 +5,8 @@ struct RaysInLanes {
   Float16 inverse[3];
   Float16 shift[2][3];  ///< of the planes at the minimum and at the maximum
   Float16 end;
-  Float16 squared_length;      ///< of the direction
-  std::uint32_t fit;           ///< a bit for each ray that is a usual one
-  std::uint32_t goes_down[3];  ///< and, of each axis, for those that go down it
+  Float16 squared_length;  ///< of the direction
+  std::uint32_t fit;       ///< a bit for each ray that is a usual one
 };
 
 /// @param rays sixteen of them
@@ -35,7 +34,6 @@ static inline void prepareLanes(const SceneView& view, const double* rays, Float
     lanes.shift[0][i] = zero - (o[i] + apart) * lanes.inverse[i];
     lanes.shift[1][i] = (apart - o[i]) * lanes.inverse[i];
     squared = multiplyAdd(d[i], d[i], squared);
-    lanes.goes_down[i] = ~notAbove(zero, lanes.inverse[i]);
   }
   lanes.squared_length = squared;
   lanes.end = multiplyAdd(overRoot(max_range, squared), all16(static_cast<float>(bounds::kUp)),
@@ -86,36 +84,56 @@ struct OneBound {
 /// The same rays one by one, against sixteen bounds at once.
 struct RaysOfLanes {
   alignas(64) float inverse[3][kSlots];
-  alignas(64) float shift[2][3][kSlots];
+  alignas(64) float near_shift[3][kSlots];
+  alignas(64) float far_shift[3][kSlots];
   alignas(64) float end[kSlots];
-  std::uint32_t goes_down[3];
+  // Of Bounds, counted in floats:
+  alignas(64) std::uint32_t near_plane[3][kSlots];
+  alignas(64) std::uint32_t far_plane[3][kSlots];
 
   RaysOfLanes() = default;
   explicit RaysOfLanes(const RaysInLanes& lanes) {
     for (int i = 0; i < 3; ++i) {
-      store16(inverse[i], lanes.inverse[i]);
-      store16(shift[0][i], lanes.shift[0][i]);
-      store16(shift[1][i], lanes.shift[1][i]);
-      goes_down[i] = lanes.goes_down[i];
+      const Float16 goes = lanes.inverse[i];
+      const Float16 lo = bitsOfAll(i * kSlots);
+      const Float16 hi = bitsOfAll((3 + i) * kSlots);
+      store16(inverse[i], goes);
+      store16(near_shift[i], choose(lanes.shift[0][i], lanes.shift[1][i], goes));
+      store16(far_shift[i], choose(lanes.shift[1][i], lanes.shift[0][i], goes));
+      storeBits(near_plane[i], choose(lo, hi, goes));
+      storeBits(far_plane[i], choose(hi, lo, goes));
     }
     store16(end, lanes.end);
+  }
+
+ private:
+  static Float16 bitsOfAll(int number) {
+    float bits;
+    __builtin_memcpy(&bits, &number, sizeof(bits));
+    return all16(bits);
+  }
+  static void storeBits(std::uint32_t* p, const Float16& bits) {
+    alignas(64) float all[kSlots];
+    store16(all, bits);
+    __builtin_memcpy(p, all, sizeof(all));
   }
 };
 
 [[gnu::always_inline]] static inline std::uint32_t meets(const Bounds& bounds,
                                                          const RaysOfLanes& rays, std::uint32_t ray,
                                                          Float16& near) {
-  Float16 planes[2][3];
+  const float* planes = &bounds.plane[0][0][0];
+  Float16 nears[3];
+  Float16 fars[3];
   for (int i = 0; i < 3; ++i) {
-    const std::uint32_t side = rays.goes_down[i] >> ray & 1;
-    planes[0][i] = multiplyAdd(load16(bounds.plane[side][i]), all16(rays.inverse[i][ray]),
-                               all16(rays.shift[side][i][ray]));
-    planes[1][i] = multiplyAdd(load16(bounds.plane[1 - side][i]), all16(rays.inverse[i][ray]),
-                               all16(rays.shift[1 - side][i][ray]));
+    const Float16 inverse = all16(rays.inverse[i][ray]);
+    nears[i] = multiplyAdd(load16(planes + rays.near_plane[i][ray]), inverse,
+                           all16(rays.near_shift[i][ray]));
+    fars[i] = multiplyAdd(load16(planes + rays.far_plane[i][ray]), inverse,
+                          all16(rays.far_shift[i][ray]));
   }
-  near = larger(larger(planes[0][0], planes[0][1]), larger(planes[0][2], all16(0.0F)));
-  const Float16 far =
-      smaller(smaller(planes[1][0], planes[1][1]), smaller(planes[1][2], all16(rays.end[ray])));
+  near = larger(larger(nears[0], nears[1]), larger(nears[2], all16(0.0F)));
+  const Float16 far = smaller(smaller(fars[0], fars[1]), smaller(fars[2], all16(rays.end[ray])));
   return notAbove(near, far);
 }
 

@@ -80,6 +80,7 @@ class TreeSearch : LaneSearch<What> {
     const int top = view_.depth - 1;
     const Level& roots = view_.levels[top];
     to_.work.nodes += roots.nodes * static_cast<std::uint64_t>(__builtin_popcount(active));
+    const RaysInLanes lanes = lanes_;  // to stay in registers
     alignas(64) std::uint32_t list[kListedTogether + kSlots];
     int listed = 0;
     const auto goOn = [&] {
@@ -96,7 +97,7 @@ class TreeSearch : LaneSearch<What> {
       for (; slots != 0; slots &= slots - 1) {
         const int slot = lowestBit(slots);
         Float16 near;
-        const std::uint32_t rays = meets(OneBound(node, slot), lanes_, near) & active;
+        const std::uint32_t rays = meets(OneBound(node, slot), lanes, near) & active;
         listed = append(rays, (roots.first[n] + static_cast<std::uint32_t>(slot)) * kSlots, list,
                         listed);
         if (listed > kListedTogether - kSlots) {
