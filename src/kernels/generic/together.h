@@ -9,8 +9,9 @@ constexpr int kRaysTogether = 16;
 constexpr int kNumberBits = 28;
 constexpr std::uint32_t kLargestNumber = (1U << kNumberBits) - 1;
 constexpr int kListedTogether = 1024;
-/// How many entries ahead what they need is fetched.
+/// How many entries ahead what they need is fetched, of records and of nodes.
 constexpr int kAhead = 4;
+constexpr int kNodesAhead = 8;
 
 /// A ray under way.
 template <typename Visit>
@@ -27,6 +28,14 @@ struct Companion {
   /// The end of the stretch that it is on.
   float end() const { return begin + length; }
 };
+
+static inline void fetchNode(const Bounds& node) {
+  for (const auto& side : node.plane) {
+    for (const float* slots : side) {
+      prefetch(slots);
+    }
+  }
+}
 
 static inline void fetchRecord(const SceneView& view, std::uint32_t entry) {
   const BoxRecord& record = view.records[entry & kLargestNumber];

@@ -128,6 +128,9 @@ class TreeSearch : LaneSearch<What> {
       const std::uint32_t node = nodes[k] & kLargestNumber;
       const std::uint32_t ray = nodes[k] >> kNumberBits;
       Float16 near;
+      if (k + kNodesAhead < count) {
+        fetchNode(here.bounds[nodes[k + kNodesAhead] & kLargestNumber]);
+      }
       const std::uint32_t bits = meets(here.bounds[node], in_memory_, ray, near);
       listed = append(bits, here.first[node] | ray << kNumberBits, near, list, nears, listed);
       if (listed > kListedTogether - kSlots) {
