@@ -17,7 +17,8 @@
 namespace box_query {
 
 struct IdentifiedBox {
-  IdentifiedBox() = default;  ///< of any numbers
+  // Not defaulted: emplace_back() would fill it with zeros first.
+  IdentifiedBox() {}  // NOLINT(modernize-use-equals-default): of any numbers
   IdentifiedBox(std::int64_t box_id, const Vector3& center, const Quaternion& orientation,
                 const Vector3& half_extents)
       : id(box_id), box{center, orientation, half_extents} {}

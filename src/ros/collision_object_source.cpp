@@ -10,6 +10,7 @@
 #include "ros/box_checks.h"
 #include "ros/collision_object.h"
 #include "ros/foreign_fields.h"
+#include "ros/number_pairs.h"
 #include "ros/rigid_object.h"
 
 #include <algorithm>
@@ -36,22 +37,33 @@ constexpr std::size_t kTriangleSize = 3 * sizeof(std::uint32_t);
 constexpr std::size_t kPointSize = 3 * sizeof(double);
 constexpr std::size_t kPlaneSize = 4 * sizeof(double);
 
-Pose readPose(WireBlock& block) {
-  Pose pose{block.vector(), block.quaternion()};
-  if (pose.orientation.coeffs() == Eigen::Vector4d::Zero()) {
-    pose.orientation.setIdentity();
-  }
-  return pose;
+/// Straight into where it is kept: a copy would be waited for. A quaternion of zeros is the
+/// identity.
+void readPose(const std::uint8_t* bytes, Vector3& position, Quaternion& orientation) {
+  copyNumbers(bytes, position);
+  const NumberPair xy = loadPair(bytes + sizeof(position));
+  const NumberPair zw = loadPair(bytes + sizeof(position) + sizeof(xy));
+  const auto is_set = (xy != 0.0) | (zw != 0.0);
+  const NumberPair unit_zw = {0.0, 1.0};
+  storePair(xy, orientation.coeffs().data());
+  storePair((is_set[0] | is_set[1]) != 0 ? zw : unit_zw, orientation.coeffs().data() + 2);
 }
 
 /// The n-th of them; the identity if there are fewer.
-Pose poseAt(const WireArray& poses, std::uint32_t n) {
-  if (n >= poses.count) {
-    return {};
+void readPoseAt(const WireArray& poses, std::uint32_t n, Vector3& position,
+                Quaternion& orientation) {
+  if (n < poses.count) {
+    readPose(poses.elements.bytes() + n * kPoseSize, position, orientation);
+  } else {
+    position.setZero();
+    orientation.setIdentity();
   }
-  WireBlock block = poses.elements;
-  block.skip(n * kPoseSize);
-  return readPose(block);
+}
+
+Pose poseAt(const WireArray& poses, std::uint32_t n) {
+  Pose pose;
+  readPoseAt(poses, n, pose.position, pose.orientation);
+  return pose;
 }
 
 /// What stands at the same places in every object, whatever its operation.
@@ -114,12 +126,15 @@ void addSolids(const Solids& solids, Fields& fields, BoxChange& change) {
   kept.reserve(solids.size());
   each.resize(solids.size(), boost::container::default_init);
   const Placer placed(fields.pose);
+  const WireArray poses = fields.shape_poses.front();
   // Step by step: what was just written would be waited for.
   bool are_boxes = true;
   for (const Solid& solid : solids) {
     are_boxes = are_boxes && solid.dimensions == 3;
-    const Pose in_object = poseAt(fields.shape_poses.front(), solid.n);
-    kept.emplace_back(solid.n, in_object.position, in_object.orientation, 0.5 * solid.sides);
+    IdentifiedBox& in_object = kept.emplace_back();
+    in_object.id = solid.n;
+    readPoseAt(poses, solid.n, in_object.box.center, in_object.box.orientation);
+    in_object.box.half_extents = 0.5 * solid.sides;
   }
   for (std::size_t i = 0; i < solids.size(); ++i) {
     const OrientedBox& in_object = kept[i].box;
@@ -268,7 +283,7 @@ void readCollisionObject(WireReader& reader, const Limits& limits, DecodedMessag
   const WireHeader header = reader.header();
   Fields fields;
   WireBlock pose = reader.block<kPoseSize>();
-  fields.pose = readPose(pose);
+  readPose(pose.bytes(), fields.pose.position, fields.pose.orientation);
   const std::string_view id = reader.name("id");
   BoxChange& change = message.changes.emplace_back(limits.coordinate, id, stripSlash(header.frame));
   change.whole_namespace = true;
