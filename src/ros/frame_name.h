@@ -31,7 +31,7 @@ class FrameName {
     text_.assign(name.begin(), name.end());
     return *this;
   }
-
+  // NOLINTNEXTLINE(google-explicit-constructor): it is one
   operator std::string_view() const { return {text_.data(), text_.size()}; }
   std::string str() const { return {text_.begin(), text_.end()}; }
   std::size_t size() const { return text_.size(); }

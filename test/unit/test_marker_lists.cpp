@@ -6,11 +6,10 @@
 
 #include <gtest/gtest.h>
 
-namespace box_query {
+namespace box_query::test {
 namespace {
 
 using visualization_msgs::Marker;
-using namespace test;
 
 TEST(MarkerLists, GiveEveryBoxItsOwnIdAndPlace) {
   Marker list = cubeList();
@@ -102,4 +101,4 @@ TEST(MarkerLists, AreBoundedInTheirPlacesAndNotTheirPoints) {
 }
 
 }  // namespace
-}  // namespace box_query
+}  // namespace box_query::test

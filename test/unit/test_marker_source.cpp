@@ -10,13 +10,11 @@
 
 #include <gtest/gtest.h>
 
-namespace box_query {
+namespace box_query::test {
 namespace {
 
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
-
-using namespace test;
 
 MarkerArray arrayOf(const std::vector<Marker>& markers) {
   MarkerArray message;
@@ -268,4 +266,4 @@ TEST(BoxSources, NameUnknownTypesAndTheKnownOnes) {
 }
 
 }  // namespace
-}  // namespace box_query
+}  // namespace box_query::test
