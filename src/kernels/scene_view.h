@@ -77,6 +77,8 @@ struct SceneView {
   /// i / kSlots is record i. None in blocks: it is not.
   const BoxBlock* blocks;
   std::uint32_t boxes_in_blocks;
+  /// A ray through all of the scene meets more than one of the bounds.
+  bool is_crowded;
   /// Of a list of several nodes: slot n is around all of node n.
   const Bounds* around_nodes;
   const LeafBoxes* leaves;  ///< of each node of the lowest level

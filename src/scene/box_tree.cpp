@@ -13,9 +13,9 @@
 namespace box_query {
 namespace {
 
-/// Boxes that are sooner compared themselves than by their bounds.
-constexpr std::size_t kInBlocks = 16;
-/// Where a ray through all of the scene meets more than one of the bounds.
+/// Boxes that are sooner compared themselves than by their bounds, with some kernel at least, and
+/// where a ray through all of the scene meets more than one of the bounds.
+constexpr std::size_t kInBlocks = 32;
 constexpr std::size_t kCrowdedInBlocks = kernels::kMostInBlocks;
 
 /// The median of a sample of the boxes that kernels may take, so that a few boxes far away do not
@@ -173,8 +173,10 @@ kernels::SceneView BoxTree::view() const {
     view.around[1][i] = static_cast<float>(around_[1][i]);
     reach += std::max(std::fabs(around_[0][i]), std::fabs(around_[1][i]));
   }
-  using namespace kernels::bounds;
-  view.apart = static_cast<float>((reach * kApart + kFloatUnderflow) * (kUp * kUp));
+  namespace bounds = kernels::bounds;
+  view.apart = static_cast<float>((reach * bounds::kApart + bounds::kFloatUnderflow) *
+                                  (bounds::kUp * bounds::kUp));
+  view.is_crowded = is_crowded_;
   view.has_aligned = has_aligned_;
   view.mean_free_path = mean_free_path_;
   return view;
