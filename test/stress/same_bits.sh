@@ -16,12 +16,13 @@ trap 'rm -rf "$work"' EXIT
 printf '%s\n' "$@" > "$work/sources"
 "$program" > "$work/expected"
 
-# What the processor cannot run is left out, and said. The header that takes longest to read is read once.
+# What the processor cannot run is left out, and said. The headers that take longest to read are read once.
 run_with() {
   label="$compiler $*"
   folder=$work/$(echo "$*" | tr -d ' ')
   mkdir "$folder"
-  echo '#include <box_query/geometry.h>' > "$folder/first.h"
+  printf '#include <%s>\n' box_query/intersection.h box_query/distance.h box_query/scene.h algorithm \
+    boost/multiprecision/cpp_int.hpp random > "$folder/first.h"
   set -- "$compiler" -std=c++17 -ffp-contract=off -w -I"$root/include" -I"$root/src" -I"$root/test" -isystem "$eigen" "$@"
   "$@" -x c++-header "$folder/first.h" -o "$folder/first.h.gch"
   xargs -P "$(nproc)" -I SOURCE sh -c 'source=$1 object=$2/$(echo "$1" | tr "/ " __).o
@@ -42,10 +43,9 @@ no_slp=
 case $compiler in
   g++*) no_slp=-fno-tree-slp-vectorize ;;  # see bq_configure
 esac
-# The ordinary build is g++ -O3 without FMA. One without any optimisation is enough.
+# The ordinary build is g++ -O3 without FMA. One without any optimisation is enough, and one of another compiler.
 case $compiler in
   g++*) run_with -O0 ;;
-  *) run_with -O3 ;;
 esac
 if ! grep -qw fma /proc/cpuinfo 2>/dev/null; then
   echo "no FMA on this machine: not compared"
