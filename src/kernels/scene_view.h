@@ -44,8 +44,8 @@ struct alignas(64) BoxBlock {
   float certain[3][kSlots];  ///< and those of what is certainly in the box
 };
 
-/// Boxes in blocks, of which a word has a bit each.
-constexpr int kMostInBlocks = 48;
+/// Boxes in blocks.
+constexpr int kMostInBlocks = 192;
 
 /// Center and half extents of a box in a block: at most this far away.
 constexpr double kFarthestInBlocks = 0x1p40;
@@ -58,6 +58,9 @@ struct alignas(64) LeafBoxes {
   float extent[3][kSlots];  ///< half extents
   float error[kSlots];      ///< what it adds to that of a distance: see generic/leaf_distances.h
 };
+
+/// How many of the bounds a ray through all of a scene meets: fewer than one, some, or many.
+enum class Density { kScattered, kCrowded, kHeaped };
 
 /// Nodes of one level: the children of node n are first[n], first[n] + 1, ... of the level below,
 /// of the lowest level records.
@@ -77,8 +80,7 @@ struct SceneView {
   /// i / kSlots is record i. None in blocks: it is not.
   const BoxBlock* blocks;
   std::uint32_t boxes_in_blocks;
-  /// A ray through all of the scene meets more than one of the bounds.
-  bool is_crowded;
+  Density density;
   /// Of a list of several nodes: slot n is around all of node n.
   const Bounds* around_nodes;
   const LeafBoxes* leaves;  ///< of each node of the lowest level

@@ -13,10 +13,9 @@
 namespace box_query {
 namespace {
 
-/// Boxes that are sooner compared themselves than by their bounds, with some kernel at least, and
-/// where a ray through all of the scene meets more than one of the bounds.
-constexpr std::size_t kInBlocks = 32;
-constexpr std::size_t kCrowdedInBlocks = kernels::kMostInBlocks;
+/// Boxes that are sooner compared themselves than by their bounds, with some kernel at least.
+constexpr std::size_t kScatteredInBlocks = 32;
+constexpr std::size_t kInBlocks = kernels::kMostInBlocks;
 
 /// The median of a sample of the boxes that kernels may take, so that a few boxes far away do not
 /// cost the others the precision of float.
@@ -77,7 +76,8 @@ BoxTree::BoxTree(const SceneBoxes& boxes) {
   built_records_ = records_.size();
   measure();
   built_cost_ = cost_;
-  if (records_.size() <= (is_crowded_ ? kCrowdedInBlocks : kInBlocks)) {
+  if (records_.size() <=
+      (density_ == kernels::Density::kScattered ? kScatteredInBlocks : kInBlocks)) {
     blocks_ = blocksOf(records_, center_);
   }
   if (levels_.size() == 1) {
@@ -133,7 +133,10 @@ void BoxTree::measure() {
   // A ray meets a convex body of surface S as often as a disc of S / 4 (Cauchy).
   const double free = 4.0 * volume / area;
   mean_free_path_ = std::min(std::max(free, longest / 64.0), 2.0 * longest);
-  is_crowded_ = free < longest;
+  constexpr double kMany = 8.0;
+  density_ = free * kMany < longest ? kernels::Density::kHeaped
+             : free < longest       ? kernels::Density::kCrowded
+                                    : kernels::Density::kScattered;
 
   cost_ = 0.0;
   for (std::size_t level = 1; level < levels_.size(); ++level) {
@@ -176,7 +179,7 @@ kernels::SceneView BoxTree::view() const {
   namespace bounds = kernels::bounds;
   view.apart = static_cast<float>((reach * bounds::kApart + bounds::kFloatUnderflow) *
                                   (bounds::kUp * bounds::kUp));
-  view.is_crowded = is_crowded_;
+  view.density = density_;
   view.has_aligned = has_aligned_;
   view.mean_free_path = mean_free_path_;
   return view;

@@ -69,7 +69,7 @@ class BoxTree {
   double around_[2][3] = {};
   bool has_aligned_ = false;
   double mean_free_path_ = 0.0;
-  bool is_crowded_ = false;
+  kernels::Density density_ = kernels::Density::kScattered;
   /// Areas of the nodes over that of the whole: what a ray has to compare.
   double cost_ = 0.0;
 

@@ -172,6 +172,26 @@ TEST_P(KernelTest, MissNothingAtAnyDepth) {
   }
 }
 
+TEST_P(KernelTest, MissNothingInHeaps) {
+  // Where some kernels compare boxes themselves: to the last in a word, a block, and beyond.
+  for (const std::size_t count : {33, 48, 49, 64, 65, 127, 128, 129, 191, 192, 193}) {
+    Random random(28, count, 0);
+    for (const double spacing : {0.3, 3.0}) {
+      const std::vector<Box> boxes = scattered(random, count, spacing);
+      const double side = spacing * std::cbrt(static_cast<double>(count));
+      const Asked kernel(boxes, *GetParam());
+      int met = 0;
+      constexpr int kRays = 60;
+      for (int i = 0; i < kRays; ++i) {
+        const Ray ray = rayAmong(random, 3.0 * side, boxes);
+        met += check(kernel, boxes, ray);
+        met += check(kernel, boxes, Segment{ray.origin, ray.origin + side * ray.direction});
+      }
+      EXPECT_GT(met, kRays / 4) << count << " boxes";
+    }
+  }
+}
+
 TEST_P(KernelTest, MissNothingFarFromTheOriginOrAtAnyScale) {
   Random random(18, 0, 0);
   for (const double scale : {0x1p-80, 0x1p-40, 1.0, 0x1p30, 0x1p50}) {

@@ -228,5 +228,5 @@ static inline Double8 zeroWhere(Mask8 m, Double8 a) {
 static inline Double8 either(Mask8 m, Double8 a, Double8 b) {
   return {_mm512_mask_mov_pd(b.v, m.bits, a.v)};
 }
-/// How many boxes are sooner compared themselves than by their bounds, where few are met.
-constexpr std::uint32_t kSparseInBlocks = 32;
+/// How many boxes are sooner compared themselves than by their bounds, of each Density.
+constexpr std::uint32_t kInBlocks[] = {32, 64, 192};

@@ -389,5 +389,5 @@ static inline void loadRays(const double* rays, const Double4& center, Float16* 
 
 /// What boxes of a block are compared in, where there are more than eight.
 using BlockLanes = Float8;
-/// How many boxes are sooner compared themselves than by their bounds, where few are met.
-constexpr std::uint32_t kSparseInBlocks = 16;
+/// How many boxes are sooner compared themselves than by their bounds, of each Density.
+constexpr std::uint32_t kInBlocks[] = {16, 48, 48};

@@ -245,7 +245,8 @@ template <typename Visit>
 /// (Each with little of its own, so that most rays among few boxes need no more.)
 template <typename Visit>
 static Answer search(const SceneView& view, const RayQuery& query, Found& found) {
-  if (view.boxes_in_blocks > 0 && (view.is_crowded || view.boxes_in_blocks <= kSparseInBlocks)) {
+  if (view.boxes_in_blocks > 0 &&
+      view.boxes_in_blocks <= kInBlocks[static_cast<int>(view.density)]) {
     BlockRay ray;
     if (prepare(view, query, ray)) {
       return searchBlocks<Visit>(view, query, found, ray);

@@ -40,13 +40,13 @@ template <typename Record, typename Visit>
 
 /// Visits what a ray may meet of a list. Nodes of a list, and blocks, are full, but for the last:
 /// the number of a slot among them is that of its record.
-template <typename Visit>
+template <typename Visit, int kWords>
 [[gnu::noinline]] static Answer visitList(const SceneView& view, const RayQuery& query,
                                           Found& found, FloatRay& ray, const std::uint64_t* met,
                                           const float* nears) {
   Visit visit(view, query, found, ray);
   if (visit.begin()) {
-    for (int w = 0; w < kRootWords; ++w) {
+    for (int w = 0; w < kWords; ++w) {
       const auto record = [w](int slot) { return static_cast<std::uint32_t>(64 * w + slot); };
       if (!visitWord(met[w], nears + 64 * w, ray, record, visit)) {
         break;
@@ -66,32 +66,38 @@ static Answer searchList(const SceneView& view, const RayQuery& query, Found& fo
   found.work->nodes += list.nodes;
   meetsNodes(list.bounds, static_cast<int>(list.nodes), RayLanes(ray), nears, met);
   return (met[0] | met[1]) == 0 ? Answer::kNone
-                                : visitList<Visit>(view, query, found, ray, met, nears);
+                                : visitList<Visit, kRootWords>(view, query, found, ray, met, nears);
 }
 
 /// What is known in float of a ray among the boxes of blocks.
+template <int kWords>
 struct AmongBlocks {
-  alignas(64) float nears[kMostInBlocks];  ///< where it enters each, as far as it does
-  std::uint64_t met[kRootWords];           ///< a bit for each that it may meet
+  alignas(64) float nears[64 * kWords];  ///< where it enters each, as far as it does
+  std::uint64_t met[kWords];             ///< a bit for each that it may meet
   float first_end;  ///< the first one is entered up to it: the end of the ray at most
   bool is_met;      ///< certainly, any of them, within its range
 };
 
+/// Compares a ray with up to 64 boxes.
 /// @param Lanes the boxes that are compared at once
-template <typename Visit, typename Lanes>
-[[gnu::always_inline]] static inline void compareWithBlocks(const SceneView& view, bool is_masked,
-                                                            const BlockRay& ray,
-                                                            AmongBlocks& among) {
+/// @return the boxes that it may meet, a bit each
+template <typename Visit, typename Lanes, int kWords>
+[[gnu::always_inline]] static inline std::uint64_t compareWithWord(const SceneView& view, int word,
+                                                                   bool is_masked,
+                                                                   const BlockRay& ray,
+                                                                   AmongBlocks<kWords>& among) {
   constexpr std::uint32_t kLanes = sizeof(Lanes) / sizeof(float);
-  among.first_end = ray.end;
-  among.is_met = false;
+  const std::uint32_t before = 64 * static_cast<std::uint32_t>(word);
+  const std::uint32_t left = view.boxes_in_blocks - before;
+  const BoxBlock* blocks = view.blocks + before / kSlots;
+  float* nears = among.nears + before;
   std::uint64_t met = 0;
-  for (std::uint32_t first = 0; first < view.boxes_in_blocks; first += kLanes) {
-    const BoxBlock& block = view.blocks[first / kSlots];
+  for (std::uint32_t first = 0; first < left && first < 64; first += kLanes) {
+    const BoxBlock& block = blocks[first / kSlots];
     BlockTimes<Lanes> times;
     const std::uint64_t bits = meets(block, first % kSlots, ray, times);
     met |= bits << first;
-    storeLanes(among.nears + first, times.near);
+    storeLanes(nears + first, times.near);
     // (Of one box the end of the ray is as good.)
     const std::uint64_t enough = Visit::kAnyWillDo ? bits : bits & (bits - 1);
     if (enough != 0 && !is_masked) {
@@ -105,8 +111,33 @@ template <typename Visit, typename Lanes>
       }
     }
   }
-  among.met[0] = met;
-  among.met[1] = 0;
+  return met;
+}
+
+template <typename Visit, typename Lanes, int kWords>
+[[gnu::always_inline]] static inline Answer searchBlocks(const SceneView& view,
+                                                         const RayQuery& query, Found& found,
+                                                         const BlockRay& ray) {
+  AmongBlocks<kWords> among;
+  among.first_end = ray.end;
+  among.is_met = false;
+  std::uint64_t any = 0;
+  for (int w = 0; w < kWords; ++w) {
+    among.met[w] = 64U * static_cast<std::uint32_t>(w) < view.boxes_in_blocks
+                       ? compareWithWord<Visit, Lanes>(view, w, query.mask != nullptr, ray, among)
+                       : 0;
+    any |= among.met[w];
+    if (among.is_met) {
+      return Answer::kYes;
+    }
+  }
+  if (any == 0) {
+    return Answer::kNone;
+  }
+  FloatRay range;
+  range.scale = 1.0;
+  range.setRange(0.0F, among.first_end);
+  return visitList<Visit, kWords>(view, query, found, range, among.met, among.nears);
 }
 
 /// The same where all boxes are in blocks.
@@ -114,25 +145,14 @@ template <typename Visit>
 [[gnu::always_inline]] static inline Answer searchBlocks(const SceneView& view,
                                                          const RayQuery& query, Found& found,
                                                          const BlockRay& ray) {
-  AmongBlocks among;
   found.work->nodes += (view.boxes_in_blocks + kSlots - 1) / kSlots;
-  // NOLINTBEGIN(misc-redundant-expression): with AVX-512 the lanes of a block are sixteen
-  if (view.boxes_in_blocks > 8) {
-    compareWithBlocks<Visit, BlockLanes>(view, query.mask != nullptr, ray, among);
-  } else {
-    compareWithBlocks<Visit, Float8>(view, query.mask != nullptr, ray, among);
+  if (view.boxes_in_blocks <= 8) {
+    return searchBlocks<Visit, Float8, 1>(view, query, found, ray);
   }
-  // NOLINTEND(misc-redundant-expression)
-  if (among.is_met) {
-    return Answer::kYes;
+  if (view.boxes_in_blocks <= 64) {
+    return searchBlocks<Visit, BlockLanes, 1>(view, query, found, ray);
   }
-  if (among.met[0] == 0) {
-    return Answer::kNone;
-  }
-  FloatRay range;
-  range.scale = 1.0;
-  range.setRange(0.0F, among.first_end);
-  return visitList<Visit>(view, query, found, range, among.met, among.nears);
+  return searchBlocks<Visit, BlockLanes, kMostInBlocks / 64>(view, query, found, ray);
 }
 
 /// Visits the records of leaves that the ray may meet; four leaves are compared before any record
