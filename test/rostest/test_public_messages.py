@@ -95,20 +95,20 @@ class TestPublicMessages(unittest.TestCase):
         self.assertEqual((answer.box_topic, answer.box_label), ('/' + topic, label))
         self.assertAlmostEqual(answer.range, 50.0 - 1.6, places=12)
 
+    def jsk_box(self, classes, x, label):
+        one = self.header(classes['jsk_recognition_msgs/BoundingBox'](), 7)
+        return fill(one, pose=self.pose(classes, x), dimensions=SIZE, value=0.5, label=label)
+
     def test_jsk_bounding_box_array(self):
         classes = message_classes('jsk_recognition_msgs/BoundingBoxArray')
-
-        def box(x, label):
-            one = self.header(classes['jsk_recognition_msgs/BoundingBox'](), 7)
-            return fill(one, pose=self.pose(classes, x), dimensions=SIZE, value=0.5, label=label)
         array = self.header(classes['jsk_recognition_msgs/BoundingBoxArray'](), 8, 'nowhere')
-        array.boxes = [box(10.0, 3), box(13.0, 4)]
+        array.boxes = [self.jsk_box(classes, 10.0, 3), self.jsk_box(classes, 13.0, 4)]
         publisher = self.publisher('jsk', type(array))
         publisher.publish(array)
         boxes = self.names_of('jsk', [('3', 0, '3'), ('4', 1, '4')])
         self.check_box(boxes['4', 1, '4'], 13.0, 7)
         self.check_ray('jsk', 13.0, '4')
-        array.boxes = [box(16.0, 4)]
+        array.boxes = [self.jsk_box(classes, 16.0, 4)]
         publisher.publish(array)
         self.check_box(self.names_of('jsk', [('4', 0, '4')])['4', 0, '4'], 16.0, 7)
 
@@ -242,6 +242,9 @@ class TestPublicMessages(unittest.TestCase):
                       'autoware_msgs/DetectedObjectArray', 'moveit_msgs/CollisionObject',
                       'moveit_msgs/PlanningScene'):
             self.assertIn('%s (%s)' % (known, message_classes(known)[known]._md5sum), reason)
+        classes = message_classes(name)
+        self.publisher('beside', classes[name]).publish(classes[name](boxes=[self.jsk_box(classes, 80.0, 3)]))
+        self.check_box(self.names_of('beside', [('3', 0, '3')])['3', 0, '3'], 80.0, 7)
 
 
 if __name__ == '__main__':

@@ -152,8 +152,9 @@ TEST_F(SceneMonitorClock, GivesUpWaitingBoxesWhileTheClockStands) {
   setTime(300.0);
   parameters_.waiting_timeout = 0.1;
   start();
-  say({cube("absent", 1, 1.0)});
+  say({cube("absent", 1, 1.0), cube("map", 2, 2.0)});
   EXPECT_TRUE(eventually([&] { return monitor_->statistics().given_up_boxes == 1; }));
+  EXPECT_EQ(contents(*monitor_->currentScene()), "2:2 ");
 }
 
 TEST_F(SceneMonitorClock, ForgetsWhatItKnewWhenTimeGoesBack) {

@@ -145,6 +145,7 @@ TEST_F(MonitorOfOneTopic, IsIncompleteWhileAPublisherOfAnotherTypeCannotBeHeard)
   tellMaster("unregisterPublisher", {"/second", topic_, second.name});
   tellMaster("unregisterPublisher", {"/third", topic_, third.name});
   EXPECT_TRUE(becomes(true));
+  EXPECT_EQ(contents(*monitor_->currentScene()), "1:1 ") << "of the publisher that is heard";
 }
 
 TEST_F(MonitorOfOneTopic, RefusesMalformedMessagesWhole) {

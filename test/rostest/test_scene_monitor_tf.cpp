@@ -81,9 +81,10 @@ TEST_F(SceneMonitorTf, WaitsForALateTransformAndSaysSo) {
 TEST_F(SceneMonitorTf, GivesUpWhatNeverComesAndNamesIt) {
   parameters_.waiting_timeout = 0.2;
   start();
-  say({cube("never", 1, 1.0)});
+  say({cube("never", 1, 1.0), cube("map", 2, 2.0)});
   ASSERT_TRUE(eventually([&] { return monitor_->statistics().given_up_boxes == 1; }));
   const SnapshotPtr snapshot = monitor_->currentScene();
+  EXPECT_EQ(contents(*snapshot), "2:2 ");
   EXPECT_EQ(snapshot->topics[0].waiting, 0U);
   EXPECT_EQ(snapshot->topics[0].rejected, 1U);
   EXPECT_EQ(completenessOf(*monitor_).reason,
