@@ -148,6 +148,7 @@ TEST_F(Bounds, AreForgottenOnlyWhenTheTopicIsCleared) {
   say({boxesOf("a", 2, 1)});
   say({boxesOf("a", 1, 4)}, true);
   EXPECT_EQ(reason(), "") << "a whole set says all";
+  EXPECT_EQ(boxes(), 4U);
   say({boxesOf("a", 2, 1)});
   EXPECT_NE(reason(), "");
   tracker_.forgetBefore(0, tracker_.lastWord());
@@ -172,6 +173,7 @@ TEST_F(Bounds, OfWhatWaitsMakeTheSceneIncompleteUntilTheTopicIsCleared) {
   EXPECT_EQ(tracker_.counts().messages, 3U);
   say({allGone(), boxesOf("a", 1, 1)});
   EXPECT_EQ(reason(), "");
+  EXPECT_EQ(boxes(), 1U);
   lose_and_say({boxesOf("a", 1, 1)}, true);
   EXPECT_EQ(reason(), "") << "a whole set says all";
   lose_and_say({allGone()}, false);
@@ -228,6 +230,7 @@ TEST_F(Bounds, AreNotForgottenWithFormerPublishersWhereTheNewOneGoesBeyond) {
   const std::uint64_t before = tracker_.lastWord();
   say({boxesOf("b", 1, 1)});
   EXPECT_EQ(rejected(), 1U);
+  EXPECT_EQ(boxes(), 4U);
   tracker_.forgetBefore(0, before);
   EXPECT_EQ(boxes(), 0U);
   EXPECT_NE(reason(), "") << "what the new one said is not known";

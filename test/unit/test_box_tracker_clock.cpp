@@ -81,6 +81,7 @@ TEST_F(ClockThatGoesBack, LeavesOnlyWhatIsOfTheNewTime) {
 
 TEST_F(ClockThatGoesBack, LeavesNothingThatCameLongBefore) {
   say({boxAt(1, 1, kNow)});
+  ASSERT_EQ(contents(), "1:1 ");
   turnBack(std::chrono::milliseconds(500));
   EXPECT_EQ(contents(), "");
   EXPECT_FALSE(tracker_.draft().snapshot.topics[0].heard);
@@ -88,6 +89,7 @@ TEST_F(ClockThatGoesBack, LeavesNothingThatCameLongBefore) {
 
 TEST_F(ClockThatGoesBack, LeavesNothingWithoutAStampAndCallsItNotHeard) {
   say({boxAt(1, 1, ros::Time())});
+  ASSERT_EQ(contents(), "1:1 ");
   ASSERT_TRUE(tracker_.draft().snapshot.completeness(kBefore).complete);
   turnBack();
   EXPECT_EQ(contents(), "");
@@ -133,6 +135,7 @@ TEST_F(ClockThatGoesBack, IsNotKnownOnceNobodyPublishesIt) {
   EXPECT_EQ(tracker_.draft().snapshot.completeness(kBefore).reason,
             "Nobody publishes /clock any more, and the time stands at 500.000000000: start what "
             "publishes it.");
+  EXPECT_EQ(contents(), "1:1 ");
   tracker_.setClockGone(false);
   EXPECT_TRUE(tracker_.draft().snapshot.completeness(kBefore).complete);
 }

@@ -192,8 +192,8 @@ void expectGood(const DecodedMessage& message) {
   }
 }
 
-/// What a topic says of itself after the message alone. What was bad in it is counted.
-std::string reasonAfter(const Example& example, DecodedMessage message) {
+/// What a topic has after the message alone. What was bad in it is counted.
+Draft draftAfter(const Example& example, DecodedMessage message) {
   Parameters parameters;
   const tf2::BufferCore tf;
   BoxTracker tracker(parameters, tf);
@@ -208,14 +208,19 @@ std::string reasonAfter(const Example& example, DecodedMessage message) {
     by_reason += boxes;
   }
   EXPECT_EQ(by_reason, tracker.counts().rejected_boxes);
-  return tracker.draft().snapshot.completeness(ros::Time(100)).reason;
+  return tracker.draft();
+}
+
+/// What the topic says of itself then.
+std::string reasonOf(const Draft& draft) {
+  return draft.snapshot.completeness(ros::Time(100)).reason;
 }
 
 void expectExplained(const Example& example, const Bytes& bytes) {
   const DecodedMessage message = decodeBytes(example.type, bytes);
   expectGood(message);
   const bool is_bad = !message.problem.empty() || rejectedOf(message) > 0;
-  const std::string reason = reasonAfter(example, message);
+  const std::string reason = reasonOf(draftAfter(example, message));
   if (is_bad) {
     const char* const what = message.problem.empty() ? "box " : "The last message on topic ";
     EXPECT_NE(reason.find(what), std::string::npos) << example.type << ": " << reason;
@@ -231,7 +236,9 @@ TEST(GarbageInBoxes, TheExamplesAreGood) {
     EXPECT_EQ(message.problem, "");
     EXPECT_EQ(boxesOf(message), example.boxes) << example.type;
     EXPECT_EQ(rejectedOf(message), 0U) << example.type;
-    EXPECT_EQ(reasonAfter(example, message), "") << example.type;
+    const Draft draft = draftAfter(example, message);
+    EXPECT_EQ(reasonOf(draft), "") << example.type;
+    EXPECT_EQ(draft.boxes.size(), example.boxes) << example.type;
   }
 }
 

@@ -94,6 +94,7 @@ TEST_F(WholeSets, AreNoChangeWhereTheySayTheSameAgain) {
   const std::uint64_t version = tracker_.boxesVersion();
   say(wholeSet({{"car", 1}, {"bike", 2}}));
   EXPECT_EQ(tracker_.boxesVersion(), version);
+  EXPECT_EQ(contents(), "bike/1:2 car/0:1 ");
   say(wholeSet({{"car", 1}}));
   EXPECT_NE(tracker_.boxesVersion(), version);
 }
@@ -113,14 +114,15 @@ TEST_F(WholeSets, StayWhileTheNextOneWaitsButForWhatIsNoLongerInIt) {
 TEST_F(WholeSets, DropWaitingBoxesThatTheNextOneDoesNotHave) {
   say(wholeSet({{"car", 1, "cart"}}));
   EXPECT_EQ(state().waiting, 1U);
-  say(wholeSet({}));
+  say(wholeSet({{"bike", 2}}));
   EXPECT_EQ(state().waiting, 0U);
   setTransform("cart", 20);
-  EXPECT_EQ(contents(), "");
+  EXPECT_EQ(contents(), "bike/0:2 ");
 }
 
 TEST_F(WholeSets, ReplaceABoxByABadOne) {
   say(wholeSet({{"car", 1}}));
+  EXPECT_EQ(contents(), "car/0:1 ");
   say(wholeSet({{"car", std::numeric_limits<double>::infinity()}}));
   EXPECT_EQ(contents(), "");
   EXPECT_EQ(state().rejected, 1U);
