@@ -31,8 +31,8 @@ struct BoxChanges {
   std::size_t removed = 0;
 };
 
-/// A tree of sixteen children a node, all leaves at the same depth; up to 128 boxes are one list,
-/// and the first few of them are kept in blocks too.
+/// A tree of sixteen children a node, all leaves at the same depth; up to 128 boxes are one list.
+/// Few boxes, and up to 192 in a heap, are kept in blocks too.
 class BoxTree {
  public:
   BoxTree() = default;
@@ -40,7 +40,7 @@ class BoxTree {
 
   /// The tree of boxes that come after those of this tree: the same nodes with other bounds, and
   /// one more root for those that are added. Nothing where a new tree is the better one, since
-  /// there are few boxes, or boxes that kernels may not take, or too much has changed.
+  /// there are few boxes, some in blocks or that kernels may not take, or too much has changed.
   std::optional<BoxTree> updated(const SceneBoxes& boxes, const BoxChanges& changes) const;
 
   /// Valid as long as this tree is neither changed nor moved.

@@ -139,6 +139,24 @@ TEST(SceneUpdate, AnswersAreThoseOfANewScene) {
   EXPECT_GT(refitted, 15U);
 }
 
+/// So many in a heap that the kernels compare them themselves (Density::kHeaped) though they make
+/// more than a list.
+TEST(SceneUpdate, HeapedBoxesAreWhereTheyMovedTo) {
+  Sampler sampler(8);
+  std::vector<Box> boxes;
+  while (boxes.size() < 160) {
+    const Vector3 center = sampler.vector(-6.0, 6.0);
+    const Vector3 size = sampler.vector(1.0, 3.0);
+    boxes.emplace_back(AlignedBox{center - size, center + size});
+  }
+  Scene scene(std::move(boxes));
+  for (int step = 0; step < 12; ++step) {
+    Next next = nextOf(sampler, scene.boxes(), step % 3 == 0 ? 0.01 : 0.0, 0.3, 2.0, 0);
+    scene = scene.updated(next.boxes, next.previous);
+    expectAnswersOfNewScene(sampler, scene);
+  }
+}
+
 TEST(SceneUpdate, CountsWhatIsDifferent) {
   Sampler sampler(2);
   const std::vector<Box> boxes = randomBoxes(sampler, 1000);
