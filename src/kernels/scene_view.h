@@ -10,6 +10,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace box_query::kernels {
 
@@ -141,7 +142,7 @@ using Take = double (*)(void* context, const Found& found);
 struct Found {
   static constexpr int kCapacity = 64;
 
-  // (Without an initializer for what a query sets: most of them need little of it.)
+  // (Without an initializer for the candidates: most queries need few of them.)
   Found(Work* what_was_done, Take more, void* its_context)
       : count(0), work(what_was_done), take(more), context(its_context) {}
   Found() : Found(nullptr, nullptr, nullptr) {}
@@ -150,8 +151,9 @@ struct Found {
   Work* work;  ///< is added to
   Take take;   ///< for more candidates than there is room for
   void* context;
-  /// A box that is certainly entered before this parameter is certainly in range.
-  double t_inside;
+  /// A box that is certainly entered before this parameter is certainly in range; of none is it
+  /// known where the ray came near no box.
+  double t_inside = -std::numeric_limits<double>::infinity();
   Candidate candidates[kCapacity];
 };
 

@@ -51,8 +51,6 @@ void askTogether(const Impl& scene, kernels::Together together, const Linear* li
     together(scene.view, queries, deliver, &context, work_of_thread);
     if (!scene.tree.left_out().empty()) {
       kernels::Found nothing;
-      nothing.count = 0;
-      nothing.t_inside = -std::numeric_limits<double>::infinity();
       for (std::size_t i = 0; i < size; ++i) {
         if (!context.is_taken[i]) {
           take(first + i, kernels::Answer::kUndecided, &nothing);

@@ -159,6 +159,17 @@ TEST(SceneCast, MaxRangeIsInMetresClosedAndExact) {
   EXPECT_TRUE(Scene({AlignedBox{{kMax, 0, 0}, {kMax, 0, 0}}}).cast(kAlongX, kMax).hit);
 }
 
+// A range that no kernel had looked at was read before it was set.
+TEST(SceneCast, MaxRangeHoldsForABoxThatIsNotInTheTree) {
+  const AlignedBox tiny{{10, -1e-300, 0}, {11, 1e-300, 0}};
+  const Scene scene({tiny, cubeAt(0, 1000), cubeAt(5, 1000), cubeAt(0, -1000)});
+  for (const double max_range : {kInf, 9.0, 20.0, 5.0, 10.0, 0.0}) {
+    EXPECT_EQ(scene.cast(kAlongX, max_range).hit, max_range >= 10.0) << max_range;
+    EXPECT_EQ(scene.castClosest(kAlongX, max_range).hit, max_range >= 10.0) << max_range;
+    EXPECT_EQ(scene.castAny(kAlongX, max_range), max_range >= 10.0) << max_range;
+  }
+}
+
 TEST(SceneCast, ANormalIsThatOfTheLowestAxis) {
   EXPECT_EQ(Scene({cubeAt(5, 5, 5)}).cast(Ray{{0, 0, 0}, {1, 1, 1}}).normal, Vector3(-1, 0, 0));
   EXPECT_EQ(Scene({cubeAt(0, 5, 5)}).cast(Ray{{0, 0, 0}, {0, 1, 1}}).normal, Vector3(0, -1, 0));
