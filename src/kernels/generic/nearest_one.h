@@ -6,6 +6,8 @@
 /// Boxes of leaves that may be the nearest one.
 class NearestList {
  public:
+  NearestList() { clear(); }
+
   void clear() {
     bound_ = std::numeric_limits<float>::max();
     lower_ = 0.0F;
@@ -73,9 +75,7 @@ template <int kSteps>
 class NearestOneSearch {
  public:
   NearestOneSearch(const SceneView& view, const FloatSegment& segment, Work& work)
-      : view_(view), segment_(segment), lanes_(segment), work_(work) {
-    list_.clear();
-  }
+      : view_(view), segment_(segment), lanes_(segment), work_(work) {}
 
   NearestList& run() {
     const int top = view_.depth_together - 1;
