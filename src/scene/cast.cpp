@@ -126,12 +126,13 @@ ClosestBox Scene::Impl::decidedClosestOf(const Ray& ray, double max_range, const
   return {true, first.box(), first.lower(), first.upper()};
 }
 
-/// Calls answer(found) with what the kernels find, or null where they leave it open.
-/// @param miss what there is to say if it is nothing
-template <typename Miss, typename Answer>
+/// Calls answer(found) with what the kernels find, or null where they leave it open; a miss, which
+/// is what its result begins as, needs no more.
+template <typename Answer>
 [[gnu::always_inline]] inline auto Scene::Impl::castByKernels(const Ray& ray, double max_range,
-                                                              const BoxMask* mask, const Miss& miss,
-                                                              Answer&& answer) const {
+                                                              const BoxMask* mask,
+                                                              Answer&& answer) const
+    -> decltype(answer(nullptr)) {
   bool too_many = false;
   kernels::Found found(
       &work_of_thread,
@@ -142,21 +143,21 @@ template <typename Miss, typename Answer>
       &too_many);
   const kernels::Answer found_out = kernels.closest(view, rayQuery(ray, max_range, mask), found);
   if (found_out == kernels::Answer::kNone && tree.left_out().empty()) {
-    return miss;
+    return {};
   }
   const bool is_all = found_out != kernels::Answer::kNotTaken && !too_many;
   return answer(is_all ? &found : nullptr);
 }
 
 Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
-  return impl_->castByKernels(ray, max_range, mask, Hit(), [&](const kernels::Found* found) {
+  return impl_->castByKernels(ray, max_range, mask, [&](const kernels::Found* found) {
     return impl_->hitOf(ray, max_range, mask, found);
   });
 }
 
 ClosestBox Scene::castClosest(const Ray& ray, double max_range,
                               const BoxMask* mask) const noexcept {
-  return impl_->castByKernels(ray, max_range, mask, ClosestBox(), [&](const kernels::Found* found) {
+  return impl_->castByKernels(ray, max_range, mask, [&](const kernels::Found* found) {
     return impl_->closestOf(ray, max_range, mask, found);
   });
 }

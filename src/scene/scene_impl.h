@@ -24,9 +24,9 @@ struct Scene::Impl {
   /// firstBlockage() for radius 0.
   Blockage firstMet(const Segment& segment, const BoxMask* mask) const;
 
-  template <typename Miss, typename Answer>
-  auto castByKernels(const Ray& ray, double max_range, const BoxMask* mask, const Miss& miss,
-                     Answer&& answer) const;
+  template <typename Answer>
+  auto castByKernels(const Ray& ray, double max_range, const BoxMask* mask, Answer&& answer) const
+      -> decltype(answer(nullptr));
 
   /// cast() and castClosest() behind the kernel.
   /// @param found all candidates, or null if they are still to be found
