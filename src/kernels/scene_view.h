@@ -45,9 +45,6 @@ struct alignas(64) BoxBlock {
   float certain[3][kSlots];  ///< and those of what is certainly in the box
 };
 
-/// Boxes in blocks.
-constexpr int kMostInBlocks = 192;
-
 /// Center and half extents of a box in a block: at most this far away.
 constexpr double kFarthestInBlocks = 0x1p40;
 
@@ -62,6 +59,10 @@ struct alignas(64) LeafBoxes {
 
 /// How many of the bounds a ray through all of a scene meets: fewer than one, some, or many.
 enum class Density { kScattered, kCrowded, kHeaped };
+
+/// How many boxes are in blocks at most, of each Density: as many as some kernel compares so.
+constexpr std::uint32_t kMostInBlocks[] = {32, 64, 192};
+constexpr int kBlockWords = 192 / 64;  ///< with a bit for each
 
 /// Nodes of one level: the children of node n are first[n], first[n] + 1, ... of the level below,
 /// of the lowest level records.

@@ -13,10 +13,6 @@
 namespace box_query {
 namespace {
 
-/// Boxes that are sooner compared themselves than by their bounds, with some kernel at least.
-constexpr std::size_t kScatteredInBlocks = 32;
-constexpr std::size_t kInBlocks = kernels::kMostInBlocks;
-
 /// The median of a sample of the boxes that kernels may take, so that a few boxes far away do not
 /// cost the others the precision of float.
 void findCenter(const SceneBoxes& boxes, double* center) {
@@ -76,8 +72,7 @@ BoxTree::BoxTree(const SceneBoxes& boxes) {
   built_records_ = records_.size();
   measure();
   built_cost_ = cost_;
-  if (records_.size() <=
-      (density_ == kernels::Density::kScattered ? kScatteredInBlocks : kInBlocks)) {
+  if (records_.size() <= kernels::kMostInBlocks[static_cast<int>(density_)]) {
     blocks_ = blocksOf(records_, center_);
   }
   if (levels_.size() == 1) {

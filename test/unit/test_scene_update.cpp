@@ -157,6 +157,21 @@ TEST(SceneUpdate, HeapedBoxesAreWhereTheyMovedTo) {
   }
 }
 
+TEST(SceneUpdate, CrowdedBoxesThatNoKernelComparesThemselvesAreRefitted) {
+  Sampler sampler(9);
+  std::vector<Box> boxes;
+  while (boxes.size() < 160) {
+    const Vector3 center = sampler.vector(-12.0, 12.0);
+    const Vector3 size = sampler.vector(0.3, 1.5);
+    boxes.emplace_back(AlignedBox{center - size, center + size});
+  }
+  Scene scene(std::move(boxes));
+  const Next next = nextOf(sampler, scene.boxes(), 0.0, 0.1, 0.3, 0);
+  scene = scene.updated(next.boxes, next.previous);
+  EXPECT_FALSE(scene.update().rebuilt);
+  expectAnswersOfNewScene(sampler, scene);
+}
+
 TEST(SceneUpdate, CountsWhatIsDifferent) {
   Sampler sampler(2);
   const std::vector<Box> boxes = randomBoxes(sampler, 1000);

@@ -228,5 +228,6 @@ static inline Double8 zeroWhere(Mask8 m, Double8 a) {
 static inline Double8 either(Mask8 m, Double8 a, Double8 b) {
   return {_mm512_mask_mov_pd(b.v, m.bits, a.v)};
 }
-/// How many boxes are sooner compared themselves than by their bounds, of each Density.
+/// How many boxes are sooner compared themselves than by their bounds, of each Density: at most
+/// kMostInBlocks.
 constexpr std::uint32_t kInBlocks[] = {32, 64, 192};

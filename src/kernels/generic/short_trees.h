@@ -152,7 +152,7 @@ template <typename Visit>
   if (view.boxes_in_blocks <= 64) {
     return searchBlocks<Visit, BlockLanes, 1>(view, query, found, ray);
   }
-  return searchBlocks<Visit, BlockLanes, kMostInBlocks / 64>(view, query, found, ray);
+  return searchBlocks<Visit, BlockLanes, kBlockWords>(view, query, found, ray);
 }
 
 /// Visits the records of leaves that the ray may meet; four leaves are compared before any record
