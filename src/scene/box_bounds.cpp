@@ -73,6 +73,43 @@ kernels::BoxRecord recordOf(const PreparedBox& box) {
   return record;
 }
 
+namespace {
+
+/// What is known of a box that is kept as an oriented one in float.
+struct FloatForm {
+  double half_extents[3];
+  double size;   ///< |center|_1 + |half extents|_1, relative to the center of the scene
+  double error;  ///< of its center, beside that of floats
+};
+
+/// Sets axes and center of a box in a slot.
+template <typename Boxes>
+FloatForm setForm(Boxes& boxes, std::size_t slot, const kernels::BoxRecord& box,
+                  const double* scene_center) {
+  FloatForm form = {{}, 0.0, kernels::bounds::kFloatUnderflow};
+  for (int j = 0; j < 3; ++j) {
+    double middle = box.column[j][3];
+    form.half_extents[j] = box.extent[j];
+    for (int i = 0; i < 3; ++i) {
+      boxes.axis[i][j][slot] = static_cast<float>(box.column[j][i]);
+    }
+    if (box.isAligned()) {
+      middle = 0.5 * (box.column[0][j] + box.column[1][j]);
+      form.half_extents[j] = 0.5 * (box.column[1][j] - box.column[0][j]);
+      for (int i = 0; i < 3; ++i) {
+        boxes.axis[i][j][slot] = i == j ? 1.0F : 0.0F;
+      }
+      form.error += 0x1p-50 * std::fabs(middle);  // it is rounded at its own size
+    }
+    const double relative = middle - scene_center[j];
+    boxes.center[j][slot] = static_cast<float>(relative);
+    form.size += std::fabs(relative) + form.half_extents[j];
+  }
+  return form;
+}
+
+}  // namespace
+
 /// Boxes in blocks; none if one of them is too far away, or too large.
 /// @pre every one is for the kernels
 std::vector<kernels::BoxBlock> blocksOf(const std::vector<kernels::BoxRecord>& records,
@@ -89,37 +126,16 @@ std::vector<kernels::BoxBlock> blocksOf(const std::vector<kernels::BoxRecord>& r
       }
       continue;
     }
-    const kernels::BoxRecord& box = records[k];
-    double extents[3];
-    double size = 0.0;
-    double pad = kernels::bounds::kFloatUnderflow;
-    for (int j = 0; j < 3; ++j) {
-      double middle = box.column[j][3];
-      extents[j] = box.extent[j];
-      for (int i = 0; i < 3; ++i) {
-        block.axis[i][j][slot] = static_cast<float>(box.column[j][i]);
-      }
-      if (box.isAligned()) {
-        middle = 0.5 * (box.column[0][j] + box.column[1][j]);
-        extents[j] = 0.5 * (box.column[1][j] - box.column[0][j]);
-        for (int i = 0; i < 3; ++i) {
-          block.axis[i][j][slot] = i == j ? 1.0F : 0.0F;
-        }
-        pad += 0x1p-50 * std::fabs(middle);  // it is rounded at its own size
-      }
-      const double relative = middle - scene_center[j];
-      block.center[j][slot] = static_cast<float>(relative);
-      size += std::fabs(relative) + extents[j];
-    }
-    if (!(size <= kernels::kFarthestInBlocks)) {
+    const FloatForm form = setForm(block, slot, records[k], scene_center);
+    if (!(form.size <= kernels::kFarthestInBlocks)) {
       return {};
     }
-    const double inner_pad = pad + kernels::bounds::kInBlock * size;
-    pad += kernels::bounds::kBlock * size;
+    const double outward = form.error + kernels::bounds::kBlock * form.size;
+    const double inward = form.error + kernels::bounds::kInBlock * form.size;
     for (int i = 0; i < 3; ++i) {
-      block.extent[i][slot] = static_cast<float>((extents[i] + pad) * kernels::bounds::kUp);
-      block.certain[i][slot] =
-          static_cast<float>(extents[i] * (2.0 - kernels::bounds::kUp) - inner_pad);
+      const double extent = form.half_extents[i];
+      block.extent[i][slot] = static_cast<float>((extent + outward) * kernels::bounds::kUp);
+      block.certain[i][slot] = static_cast<float>(extent * (2.0 - kernels::bounds::kUp) - inward);
     }
   }
   return blocks;
@@ -139,29 +155,12 @@ void clearSlot(kernels::LeafBoxes& leaf, std::size_t slot) {
 
 void setSlot(kernels::LeafBoxes& leaf, std::size_t slot, const kernels::BoxRecord& box,
              const double* scene_center) {
-  double size = 0.0;
-  double rounded = kernels::bounds::kFloatUnderflow;
-  for (int j = 0; j < 3; ++j) {
-    double middle = box.column[j][3];
-    double extent = box.extent[j];
-    for (int i = 0; i < 3; ++i) {
-      leaf.axis[i][j][slot] = static_cast<float>(box.column[j][i]);
-    }
-    if (box.isAligned()) {
-      middle = 0.5 * (box.column[0][j] + box.column[1][j]);
-      extent = 0.5 * (box.column[1][j] - box.column[0][j]);
-      for (int i = 0; i < 3; ++i) {
-        leaf.axis[i][j][slot] = i == j ? 1.0F : 0.0F;
-      }
-      rounded += 0x1p-50 * std::fabs(middle);  // at its own size
-    }
-    const double relative = middle - scene_center[j];
-    leaf.center[j][slot] = static_cast<float>(relative);
-    leaf.extent[j][slot] = static_cast<float>(extent);
-    size += std::fabs(relative) + extent;
+  const FloatForm form = setForm(leaf, slot, box, scene_center);
+  for (int i = 0; i < 3; ++i) {
+    leaf.extent[i][slot] = static_cast<float>(form.half_extents[i]);
   }
   leaf.error[slot] =
-      static_cast<float>((kernels::bounds::kLoss * size + rounded) * kernels::bounds::kUp);
+      static_cast<float>((kernels::bounds::kLoss * form.size + form.error) * kernels::bounds::kUp);
 }
 
 }  // namespace box_query
