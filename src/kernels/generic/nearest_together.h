@@ -21,6 +21,18 @@ struct NearCompanion {
   alignas(64) float below[kMaxLevels + 1][kSlots];
 };
 
+/// An Approach of one segment of many.
+struct OneApproach {
+  ApproachEach approach;
+  void* context;
+  std::size_t number;
+
+  static double take(void* self, std::uint32_t box, const NearBox& near) {
+    const OneApproach& one = *static_cast<const OneApproach*>(self);
+    return one.approach(one.context, one.number, box, near);
+  }
+};
+
 class NearestTogether {
  public:
   NearestTogether(const SceneView& view, ApproachEach approach, void* context, NearestOne* ones,
@@ -92,11 +104,7 @@ class NearestTogether {
       }
       prefetch(leaf.error);
     } else {
-      const Bounds& bounds = view_.levels[level - 1].bounds[child];
-      for (int i = 0; i < 3; ++i) {
-        prefetch(bounds.plane[0][i]);
-        prefetch(bounds.plane[1][i]);
-      }
+      fetchNode(view_.levels[level - 1].bounds[child]);
     }
   }
 
@@ -218,17 +226,9 @@ class NearestTogether {
   }
 
   void finish(NearCompanion& c) {
-    struct One {
-      ApproachEach approach;
-      void* context;
-      std::size_t number;
-    } one{approach_, context_, c.number};
-    const auto approach = [](void* to, std::uint32_t box, const NearBox& near) {
-      const One& o = *static_cast<const One*>(to);
-      return o.approach(o.context, o.number, box, near);
-    };
-    decide(view_, *c.query, c.list, approach, &one, ones_ != nullptr ? ones_ + c.number : nullptr,
-           work_);
+    OneApproach one{approach_, context_, c.number};
+    decide(view_, *c.query, c.list, OneApproach::take, &one,
+           ones_ != nullptr ? ones_ + c.number : nullptr, work_);
   }
 
   const SceneView& view_;
@@ -259,19 +259,12 @@ static void nearestTogether(const SceneView& view, const SegmentQuery* queries, 
       continue;
     }
     // What is looked at of a long segment, or of few boxes, differs too much from one to the next.
-    struct One {
-      ApproachEach approach;
-      void* context;
-      std::size_t number;
-    } one{approach, context, i};
-    const auto approachOne = [](void* to, std::uint32_t box, const NearBox& near) {
-      const One& o = *static_cast<const One*>(to);
-      return o.approach(o.context, o.number, box, near);
-    };
+    OneApproach one{approach, context, i};
     if (queries[i].mask == nullptr) {
-      nearestOne(view, queries[i], approachOne, &one, ones != nullptr ? ones + i : nullptr, work);
+      nearestOne(view, queries[i], OneApproach::take, &one, ones != nullptr ? ones + i : nullptr,
+                 work);
     } else {
-      nearest(view, queries[i], approachOne, &one, work);
+      nearest(view, queries[i], OneApproach::take, &one, work);
     }
   }
   together.run();
