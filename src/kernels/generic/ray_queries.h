@@ -7,7 +7,10 @@ class RayVisit {
  public:
   RayVisit() = default;
   RayVisit(const SceneView& view, const RayQuery& query, Found& into, FloatRay& ray)
-      : found(&into), view_(&view), query_(&query), in_float_(&ray) {}
+      : found(&into), view_(&view), query_(&query), in_float_(&ray), end_s_(ray.end_s) {}
+
+  /// What lies beyond it [s] need not be looked at.
+  float end() const { return end_s_; }
 
   /// Prepares what is compared in double, unless it is.
   /// @return whether the ray is taken
@@ -67,6 +70,7 @@ class RayVisit {
   const SceneView* view_ = nullptr;
   const RayQuery* query_ = nullptr;
   FloatRay* in_float_ = nullptr;
+  float end_s_ = 0.0F;
   RayInDouble ray_;
   bool is_begun_ = false;
   bool is_taken_ = false;
@@ -78,12 +82,7 @@ class ClosestVisit : public RayVisit {
  public:
   static constexpr bool kAnyWillDo = false;
 
-  ClosestVisit() = default;
-  ClosestVisit(const SceneView& view, const RayQuery& query, Found& into, FloatRay& ray)
-      : RayVisit(view, query, into, ray), end_s_(ray.end_s) {}
-
-  /// What lies beyond it [s] is not the first.
-  float end() const { return end_s_; }
+  using RayVisit::RayVisit;
 
   [[gnu::always_inline]] bool begin() {
     if (!is_begun_ && RayVisit::begin()) {
@@ -173,9 +172,8 @@ class ClosestVisit : public RayVisit {
     }
   }
 
-  double bound_ = kInfinity;     ///< a box that is entered later is not the first
+  double bound_ = kInfinity;     ///< a box that is entered later is not the first; end() above it
   double earliest_ = kInfinity;  ///< smallest enter_lo of the candidates
-  float end_s_ = 0.0F;           ///< the bound, rounded up
 };
 
 /// A search for any box.
@@ -183,11 +181,7 @@ class AnyVisit : public RayVisit {
  public:
   static constexpr bool kAnyWillDo = true;
 
-  AnyVisit() = default;
-  AnyVisit(const SceneView& view, const RayQuery& query, Found& into, FloatRay& ray)
-      : RayVisit(view, query, into, ray), end_s_(ray.end_s) {}
-
-  float end() const { return end_s_; }
+  using RayVisit::RayVisit;
 
   [[gnu::always_inline]] bool operator()(std::uint32_t record) {
     Candidate c;
@@ -204,7 +198,6 @@ class AnyVisit : public RayVisit {
   Answer answer() const { return is_met_ ? Answer::kYes : answerOfFound(); }
 
  private:
-  float end_s_ = 0.0F;
   bool is_met_ = false;
 };
 
