@@ -141,7 +141,7 @@ TEST(SkippedWork, WhichOfTheBoxesThatARayStartsInComesFirstIsNotCompared) {
 
 TEST(SkippedWork, WhereFloatSaysWhichBoxIsNearestDoubleIsNotAsked) {
   if (std::string(activeKernels()) == "portable") {
-    GTEST_SKIP() << "which does not go on from a float";
+    GTEST_SKIP() << "the portable kernel does not go on from a float";
   }
   for (const std::size_t count : {10U, 100U, 5000U}) {
     const Scene scene(turnedBoxes(count));
