@@ -43,9 +43,10 @@ no_slp=
 case $compiler in
   g++*) no_slp=-fno-tree-slp-vectorize ;;  # see bq_configure
 esac
-# The ordinary build is g++ -O3 without FMA. One without any optimisation is enough, and one of another compiler.
+# The ordinary build is g++ -O3 without FMA. One without any optimisation is enough.
 case $compiler in
   g++*) run_with -O0 ;;
+  *) run_with -O3 ;;
 esac
 if ! grep -qw fma /proc/cpuinfo 2>/dev/null; then
   echo "no FMA on this machine: not compared"
