@@ -170,6 +170,17 @@ TEST(SceneCast, MaxRangeHoldsForABoxThatIsNotInTheTree) {
   }
 }
 
+TEST(SceneCast, MaxRangeHoldsBeyondAllFloats) {
+  // Only doubles tell that the ray misses one box, before it meets one that is too far for a tree.
+  const AlignedBox missed{{4, 1e-9, -1}, {6, 2, 1}};
+  const Scene scene({AlignedBox{{1e150, -1, -1}, {2e150, 1, 1}}, missed, cubeAt(0, 1000)});
+  for (const double max_range : {kInf, 9.0, 1e39, 9e149, 1e150, 2e150}) {
+    EXPECT_EQ(scene.cast(kAlongX, max_range).hit, max_range >= 1e150) << max_range;
+    EXPECT_EQ(scene.castClosest(kAlongX, max_range).hit, max_range >= 1e150) << max_range;
+    EXPECT_EQ(scene.castAny(kAlongX, max_range), max_range >= 1e150) << max_range;
+  }
+}
+
 TEST(SceneCast, ANormalIsThatOfTheLowestAxis) {
   EXPECT_EQ(Scene({cubeAt(5, 5, 5)}).cast(Ray{{0, 0, 0}, {1, 1, 1}}).normal, Vector3(-1, 0, 0));
   EXPECT_EQ(Scene({cubeAt(0, 5, 5)}).cast(Ray{{0, 0, 0}, {0, 1, 1}}).normal, Vector3(0, -1, 0));

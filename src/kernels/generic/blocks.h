@@ -55,11 +55,6 @@ struct BlockRay {
   alignas(16) float direction[4];
   float pad;
   float end;
-
-  /// The same, not too late: see aboveInverseRoot().
-  float certainEnd() const {
-    return end * (1.0F - 0x1p-8F) - 2.0F * static_cast<float>(bounds::kFloatUnderflow);
-  }
 };
 
 /// @return whether the ray is a usual one

@@ -29,6 +29,8 @@ struct FloatRay {
   alignas(16) float far_shift[4];
   float begin_s;
   float end_s;
+  /// The parameter at which it ends, not too late: see certainEnd().
+  float certain_end;
   /// It goes down a tree a stretch at a time, so that what lies behind the first box is not
   /// compared: at first so far, then twice as far each time. (Measured; shorter ones spare fewer
   /// nodes than beginning anew costs.)
@@ -81,6 +83,14 @@ static inline Double4 directionOf(const RayQuery& query) {
   return query.is_segment && end > 1.0F ? 1.0F : end;
 }
 
+/// The same, given it, not too late. (It may be too large for a float, and a box that is in no tree
+/// farther away than any float.)
+static inline float certainEnd(float end) {
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  return (end < kLargest ? end : kLargest) * (1.0F - 0x1p-8F) -
+         2.0F * static_cast<float>(bounds::kFloatUnderflow);
+}
+
 /// Clips a ray to the bounds of the scene.
 /// @return whether any of it is left
 static inline bool clipToScene(const SceneView& view, FloatRay& f) {
@@ -116,6 +126,7 @@ static inline bool clipToScene(const SceneView& view, FloatRay& f) {
   f.goes_down = signsOf(ray.direction);
   f.scale = 1.0;
   f.setRange(0.0F, endOf(query, ray));
+  f.certain_end = certainEnd(f.end_s);
   f.stretch_s = firstStretch(view) * smallestOf3(magnitude(inverse));
   return in_stretches && f.end_s > f.stretch_s && !clipToScene(view, f) ? Outcome::kMiss
                                                                         : Outcome::kReady;

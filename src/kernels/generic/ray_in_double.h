@@ -6,8 +6,12 @@ struct RayInDouble {
   alignas(32) double direction[4];
   Double4 inverse;  ///< of the direction, infinite where that is 0; for aligned boxes
   double own_end;   ///< of the component: 1 of a segment, +inf of a ray
-  double t_end;     ///< a box that is certainly entered beyond it is none
-  double t_inside;  ///< a box that is certainly entered before it is certainly in range
+};
+
+/// The range of a query as parameters.
+struct Reach {
+  double outside;  ///< a box that is certainly entered beyond it is none
+  double inside;   ///< one that is certainly entered up to it is in range
 };
 
 /// Lanes whose sign is set where the number is 0 or of a size from `least` to `most`.
@@ -33,21 +37,27 @@ static inline Double4 isBetween(Double4 size, double least, double most) {
   }
   const Double4 is_long = isNotBelow(size, all4(exact::bounds::kSmallestDirection));
   ray.own_end = query.is_segment ? 1.0 : kInfinity;
-  ray.t_end = ray.own_end;
-  ray.t_inside = ray.own_end;
   if (signs3(is_fit) != 7U || signs3(is_long) == 0) {
-    ray.t_inside = 0.0;
     return false;
   }
   ray.origin = query.origin;
   store4(ray.direction, direction);
   ray.inverse = has_aligned ? all4(1.0) / direction : direction;
-  if (query.max_range < kInfinity) {
-    const double* d = ray.direction;
-    const double t = query.max_range / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    ray.t_end = t * exact::bounds::kInflate + exact::bounds::kUnderflow;
-    // 1 - x is below 1 / (1 + x), and sooner there.
-    ray.t_inside = t * (2.0 - exact::bounds::kInflate) - exact::bounds::kUnderflow;
-  }
   return true;
+}
+
+/// (Apart: most rays end far from where the first box is entered, so that floats will do. Of a
+/// query alone, so that its ray in double can stay in registers.)
+[[gnu::noinline]] static Reach reachOf(const RayQuery& query) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (!(query.max_range < kInfinity)) {
+    const double own_end = query.is_segment ? 1.0 : kInfinity;
+    return {own_end, own_end};
+  }
+  alignas(32) double d[4];
+  store4(d, directionOf(query));
+  const double t = query.max_range / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  // 1 - x is below 1 / (1 + x), and sooner there.
+  return {t * exact::bounds::kInflate + exact::bounds::kUnderflow,
+          t * (2.0 - exact::bounds::kInflate) - exact::bounds::kUnderflow};
 }

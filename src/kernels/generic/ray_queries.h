@@ -18,7 +18,6 @@ class RayVisit {
     if (!is_begun_) {
       is_begun_ = true;
       is_taken_ = prepare(*query_, view_->has_aligned, ray_);
-      found->t_inside = ray_.t_inside;
     }
     return is_taken_;
   }
@@ -26,6 +25,8 @@ class RayVisit {
   Found* found = nullptr;
 
  protected:
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
   /// Compares the ray with a record.
   /// @return false if its box is not looked at, or certainly not entered at a parameter up to
   /// `bound`
@@ -84,13 +85,6 @@ class ClosestVisit : public RayVisit {
 
   using RayVisit::RayVisit;
 
-  [[gnu::always_inline]] bool begin() {
-    if (!is_begun_ && RayVisit::begin()) {
-      shorten(ray_.t_end);
-    }
-    return is_taken_;
-  }
-
   [[gnu::always_inline]] bool operator()(std::uint32_t record) {
     Candidate c;
     if (!mayEnter(record, bound_, c)) {
@@ -115,12 +109,17 @@ class ClosestVisit : public RayVisit {
 
   Answer answer() {
     dropLater();
+    found->t_inside = in_float_->certain_end;
+    if (bound_ > found->t_inside && found->count > 0) {
+      const Reach reach = reachOf(*query_);
+      found->t_inside = reach.inside;
+      bound_ = bound_ < reach.outside ? bound_ : reach.outside;
+      dropLater();
+    }
     return answerOfFound();
   }
 
  private:
-  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
   static bool startsIn(const Candidate& c) { return c.certain && c.enter_hi <= 0.0; }
 
   /// Of the boxes that the ray starts in, all of which are entered there, that of the lowest number
@@ -185,10 +184,18 @@ class AnyVisit : public RayVisit {
 
   [[gnu::always_inline]] bool operator()(std::uint32_t record) {
     Candidate c;
-    if (!mayEnter(record, ray_.t_end, c)) {
+    if (!mayEnter(record, kInfinity, c)) {
       return true;
     }
-    if (c.certain && c.enter_hi <= ray_.t_inside) {
+    double inside = in_float_->certain_end;
+    if (c.enter_hi > inside) {
+      const Reach reach = reachOf(*query_);
+      inside = reach.inside;
+      if (c.enter_lo > reach.outside) {
+        return true;
+      }
+    }
+    if (c.certain && c.enter_hi <= inside) {
       is_met_ = true;
       return false;
     }
@@ -208,7 +215,9 @@ class AllVisit : public RayVisit {
 
   [[gnu::always_inline]] bool operator()(std::uint32_t record) {
     Candidate c;
-    return !mayEnter(record, ray_.t_end, c) || leaveToCaller(c);
+    return !mayEnter(record, kInfinity, c) ||
+           (c.enter_lo > in_float_->certain_end && c.enter_lo > reachOf(*query_).outside) ||
+           leaveToCaller(c);
   }
 
   Answer answer() const { return answerOfFound(); }

@@ -154,6 +154,7 @@ class LaneSearch {
     begun_ = 0;
     prepareLanes<What::kAreSegments>(view_, raysFrom(first, count), rangesFrom(first, count),
                                      lanes_);
+    store16(ends_, lanes_.end);
     return lanes_.fit & ((1U << count) - 1);
   }
 
@@ -217,6 +218,7 @@ class LaneSearch {
     const std::size_t number = first_ + static_cast<std::size_t>(ray);
     c.in_float.scale = 1.0;
     c.in_float.setRange(0.0F, std::numeric_limits<float>::infinity());
+    c.in_float.certain_end = certainEnd(ends_[ray]);
     to_.begin(view_, queries_.query(number, What::kAreSegments), number, c);
     if (!c.visit.begin()) {
       c.in_float.end_s = -1.0F;
@@ -224,5 +226,6 @@ class LaneSearch {
     begun_ |= 1U << ray;
   }
 
+  alignas(64) float ends_[kSlots];
   double copies_[6 * kSlots];
 };

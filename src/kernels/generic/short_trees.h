@@ -103,7 +103,7 @@ template <typename Visit, typename Lanes, int kWords>
     if (enough != 0 && !is_masked) {
       const CertainTimes<Lanes> certain(block, first % kSlots, ray, times);
       if constexpr (Visit::kAnyWillDo) {
-        const Lanes inside = allLanes<Lanes>(ray.certainEnd());
+        const Lanes inside = allLanes<Lanes>(certainEnd(ray.end));
         among.is_met = among.is_met || notAbove(certain.enter, smaller(certain.exit, inside)) != 0;
       } else {
         const float enter = smallestLane(orInfinity(certain.enter, certain.exit));
@@ -136,6 +136,7 @@ template <typename Visit, typename Lanes, int kWords>
   }
   FloatRay range;
   range.scale = 1.0;
+  range.certain_end = certainEnd(ray.end);
   range.setRange(0.0F, among.first_end);
   return visitList<Visit, kWords>(view, query, found, range, among.met, among.nears);
 }

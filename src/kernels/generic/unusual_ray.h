@@ -49,7 +49,7 @@ static inline Double4 doublesOf(const float* three) {
   const double first = largest3(choose(nearest, all4(-kInfinity), is_flat), nearest).first;
   const double last = smallest3(choose(farthest, all4(kInfinity), is_flat), farthest).first;
   const double begin = first > 0.0 ? first : 0.0;
-  const double whole = ray.t_end * f.scale * bounds::kUp;
+  const double whole = reachOf(query).outside * f.scale * bounds::kUp;
   const double end = last < whole ? last : whole;
   if (begin > end) {
     return Outcome::kMiss;
@@ -60,6 +60,7 @@ static inline Double4 doublesOf(const float* three) {
   store(f.far_shift, floatsOf(apart - shift));
   f.goes_down = signs3(direction);
   f.stretch_s = firstStretch(view);
+  f.certain_end = -1.0F;
   f.setRange(static_cast<float>(begin * (1.0 - bounds::kShiftError)),
              static_cast<float>(end * bounds::kUp + bounds::kFloatUnderflow));
   return Outcome::kReady;
