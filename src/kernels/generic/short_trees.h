@@ -114,6 +114,23 @@ template <typename Visit, typename Lanes, int kWords>
   return met;
 }
 
+/// Forgets boxes that are certainly entered after the first one. (Of many nobody can foretell which
+/// are: to skip them one by one would cost mispredicted branches.)
+template <typename Lanes, int kWords>
+[[gnu::always_inline]] static inline void forgetLater(std::uint32_t boxes,
+                                                      AmongBlocks<kWords>& among) {
+  constexpr std::uint32_t kLanes = sizeof(Lanes) / sizeof(float);
+  const Lanes end = allLanes<Lanes>(among.first_end);
+  for (std::uint32_t w = 0; 64 * w < boxes; ++w) {
+    std::uint64_t early = 0;
+    for (std::uint32_t i = 0; i < 64 && 64 * w + i < boxes; i += kLanes) {
+      const std::uint64_t bits = notAbove(loadLanes<Lanes>(among.nears + 64 * w + i), end);
+      early |= bits << i;
+    }
+    among.met[w] &= early;
+  }
+}
+
 template <typename Visit, typename Lanes, int kWords>
 [[gnu::always_inline]] static inline Answer searchBlocks(const SceneView& view,
                                                          const RayQuery& query, Found& found,
@@ -133,6 +150,10 @@ template <typename Visit, typename Lanes, int kWords>
   }
   if (any == 0) {
     return Answer::kNone;
+  }
+  constexpr int kMany = 4;  // measured
+  if (!Visit::kAnyWillDo && __builtin_popcountll(any) >= kMany) {
+    forgetLater<Lanes>(view.boxes_in_blocks, among);
   }
   FloatRay range;
   range.scale = 1.0;
