@@ -120,6 +120,31 @@ TEST(SkippedWork, WhatFloatDecidesAmongFewBoxesIsNotComparedInDouble) {
   EXPECT_EQ(workOf([&] { EXPECT_EQ(scene.castClosest(ray).box, 0U); }).boxes, 1U);
 }
 
+TEST(SkippedWork, OfAHeapHardlyMoreThanTheFirstBoxIsComparedInDouble) {
+  Sampler sampler(3);
+  std::vector<Box> heap;
+  while (heap.size() < 40) {
+    heap.emplace_back(
+        OrientedBox{sampler.vector(-0.5, 0.5), sampler.rotation(), sampler.vector(0.5, 1.5)});
+  }
+  const Scene scene(heap);
+  std::vector<Ray> rays;
+  while (rays.size() < kRays) {
+    const Vector3 origin = 5.0 * sampler.direction().normalized();
+    rays.push_back({origin, sampler.vector(-0.5, 0.5) - origin});
+  }
+  std::vector<ClosestBox> closest(rays.size());
+  const QueryCounters one_by_one = workOf([&] {
+    for (const Ray& ray : rays) {
+      EXPECT_TRUE(scene.castClosest(ray).hit);
+    }
+  });
+  const QueryCounters together =
+      workOf([&] { scene.castClosest(rays.data(), rays.size(), closest.data()); });
+  EXPECT_LT(one_by_one.boxes, kRays * 11 / 10);
+  EXPECT_LT(together.boxes, kRays * 11 / 10);
+}
+
 TEST(SkippedWork, WhichOfTheBoxesThatARayStartsInComesFirstIsNotCompared) {
   const std::vector<Box> nest = [] {
     std::vector<Box> boxes;

@@ -168,9 +168,11 @@ static void searchInLanes(const SceneView& view, const RayQueries& queries, cons
 
 template <typename What>
 static void askTogether(const SceneView& view, const RayQueries& queries, const Delivery& to) {
-  if (view.depth == 1) {
+  // (In a heap a ray meets the bounds of most boxes, and few of the boxes.)
+  const bool is_heap = view.density == Density::kHeaped && areInBlocks(view);
+  if (view.depth == 1 && !is_heap) {
     searchListTogether<What>(view, queries, to);
-  } else if (view.depth > 1 && view.levels[0].nodes <= kLargestNumber / kSlots) {
+  } else if (view.depth > 1 && !is_heap && view.levels[0].nodes <= kLargestNumber / kSlots) {
     searchInLanes<What>(view, queries, to);
   } else {
     for (std::size_t i = 0; i < queries.count; ++i) {
