@@ -35,6 +35,11 @@ constexpr double kUnderflow = 0x1p-960;
 /// (kernels/generic/wide.h), n and M are within 8u^2 n and their second parts below 3u n, a dot
 /// product adds 34u^2 n |v|_1, +-n e - y another 12u^2 n e and 23u^2 n (S + E): together 77u^2.
 constexpr double kRow = 128 * kUnit * kUnit;
+/// Coordinates along axes of kernels/generic/box_frame.h, relative to what they are made of. Those
+/// of a quaternion: 128u^2, a dot product 40u^2, what is added to it 40u^2. Those of a record: what
+/// a float takes from the rest, which is below 10u.
+constexpr double kFrame = 512 * kUnit * kUnit;
+constexpr double kRests = 16 * 0x1p-24 * kUnit;
 /// Quotient, product or square root of double-doubles, relative, including the final sum of Ziv's
 /// test: at most 32u^2.
 constexpr double kOperation = 64 * kUnit * kUnit;

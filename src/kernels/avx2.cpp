@@ -49,8 +49,10 @@ namespace avx2 {
 #include "kernels/generic/nearest_together.h"
 #include "kernels/generic/wide.h"
 #include "kernels/generic/cross.h"
+#include "kernels/generic/box_frame.h"
 #include "kernels/generic/refine.h"
-#include "kernels/generic/refine_together.h"
+#include "kernels/generic/round_nearest.h"
+#include "kernels/generic/round_together.h"
 // clang-format on
 }  // namespace avx2
 
@@ -66,7 +68,9 @@ const Kernels kAvx2 = {"avx2",
                        avx2::nearestTogether,
                        avx2::cross,
                        avx2::refine,
-                       avx2::refineTogether};
+                       avx2::findRests,
+                       avx2::roundNearest,
+                       avx2::roundTogether};
 
 }  // namespace box_query::kernels
 

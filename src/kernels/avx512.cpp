@@ -50,8 +50,10 @@ namespace avx512 {
 #include "kernels/generic/nearest_together.h"
 #include "kernels/generic/wide.h"
 #include "kernels/generic/cross.h"
+#include "kernels/generic/box_frame.h"
 #include "kernels/generic/refine.h"
-#include "kernels/generic/refine_together.h"
+#include "kernels/generic/round_nearest.h"
+#include "kernels/generic/round_together.h"
 // clang-format on
 }  // namespace avx512
 
@@ -67,7 +69,9 @@ const Kernels kAvx512 = {"avx512",
                          avx512::nearestTogether,
                          avx512::cross,
                          avx512::refine,
-                         avx512::refineTogether};
+                         avx512::findRests,
+                         avx512::roundNearest,
+                         avx512::roundTogether};
 
 }  // namespace box_query::kernels
 

@@ -65,9 +65,18 @@ struct Kernels {
   /// @return whether the box is taken, and its sides are certain
   bool (*refine)(const RefineQuery&, Refined&);
 
-  /// Works out eight distances at once. Null where it is faster to do so one by one.
+  /// Sets what the axes of the record of an oriented box lack. Null where kernels do not round.
+  /// @param quaternion x, y, z, w
+  void (*find_rests)(const double* quaternion, const BoxRecord&, AxisRests&);
+
+  /// Works out the distance to the box of a record that the segment certainly does not meet, from a
+  /// parameter near the one where it is nearest.
+  /// @return whether it is certain; if not, it is nothing
+  bool (*round_nearest)(const SceneView&, const SegmentQuery&, const NearestOne&, RoundedNearest&);
+
+  /// Works out eight distances at once.
   /// @return a bit for each that is certain; the others are nothing
-  std::uint32_t (*refine_together)(const RefineQueries&, RefinedEach&);
+  std::uint32_t (*round_together)(const SceneView&, const RoundQueries&, RoundedEach&);
 };
 
 extern const Kernels kPortable;

@@ -44,6 +44,8 @@ const Kernels kPortable = {"portable",
                            nullptr,
                            nullptr,
                            nullptr,
+                           nullptr,
+                           nullptr,
                            nullptr};
 
 }  // namespace box_query::kernels

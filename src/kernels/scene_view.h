@@ -36,6 +36,12 @@ struct alignas(64) BoxRecord {
   bool isAligned() const { return extent[3] < 0.0; }
 };
 
+/// What the axes of a record of an oriented box lack of the exact ones, a column each: NaN where
+/// that cannot be told. Of an aligned one it is nothing.
+struct alignas(16) AxisRests {
+  float column[3][4];
+};
+
 /// Sixteen boxes of a short list in float, relative to the center of the scene, all as oriented
 /// ones. An empty slot has extents of -inf.
 struct alignas(64) BoxBlock {
@@ -87,6 +93,7 @@ struct SceneView {
   const Bounds* around_nodes;
   const LeafBoxes* leaves;  ///< of each node of the lowest level
   const BoxRecord* records;
+  const AxisRests* rests;  ///< of each record, where kernels round
   std::uint32_t num_records;
   /// Number of the box in the scene.
   const std::uint32_t* box_of_record;
@@ -207,6 +214,7 @@ struct alignas(32) NearBox {
   double t;
   double lower;
   double upper;
+  std::uint32_t record;
 };
 
 /// Takes a box that may be within the bound.
@@ -219,7 +227,15 @@ using ApproachEach = double (*)(void* context, std::size_t query, std::uint32_t 
 /// The nearest box, certainly apart from the segment, and a parameter near the one where it is
 /// nearest.
 struct NearestOne {
-  std::uint32_t box;
+  std::uint32_t record;
+  double t;
+};
+
+/// Distance and parameter, correctly rounded, and the points, as SegmentDistance has them.
+struct alignas(32) RoundedNearest {
+  double on_segment[4];
+  double on_box[4];
+  double distance;
   double t;
 };
 
@@ -269,25 +285,23 @@ struct Refined {
   double distance_error;
 };
 
-constexpr int kRefineLanes = 8;
+constexpr int kRoundLanes = 8;
 
-/// Segments, each with an oriented box that it certainly does not meet, and a parameter near the
-/// one where it is nearest.
-struct alignas(64) RefineQueries {
-  double quaternion[4][kRefineLanes];  ///< x, y, z, w
-  double center[3][kRefineLanes];
-  double half_extents[3][kRefineLanes];
-  double start[3][kRefineLanes];
-  double end[3][kRefineLanes];
-  double t[kRefineLanes];
+/// Segments, and of each the record of a box that it certainly does not meet, and a parameter near
+/// the one where it is nearest.
+struct alignas(64) RoundQueries {
+  double start[3][kRoundLanes];
+  double end[3][kRoundLanes];
+  double t[kRoundLanes];
+  std::uint32_t record[kRoundLanes];
 };
 
-/// Of each: SegmentDistance.
-struct alignas(64) RefinedEach {
-  double distance[kRefineLanes];
-  double t[kRefineLanes];
-  double on_segment[3][kRefineLanes];
-  double on_box[3][kRefineLanes];
+/// Of each: RoundedNearest.
+struct alignas(64) RoundedEach {
+  double distance[kRoundLanes];
+  double t[kRoundLanes];
+  double on_segment[3][kRoundLanes];
+  double on_box[3][kRoundLanes];
 };
 
 }  // namespace box_query::kernels

@@ -2,6 +2,7 @@
 #include "scene/box_tree.h"
 
 #include "kernels/float_bounds.h"
+#include "kernels/kernels.h"
 #include "scene/box_bounds.h"
 #include "scene/tree_builder.h"
 
@@ -9,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <utility>
+#include <variant>
 
 namespace box_query {
 namespace {
@@ -86,10 +88,23 @@ BoxTree::BoxTree(const SceneBoxes& boxes) {
 void BoxTree::addRecords(const SceneBoxes& boxes, const std::vector<Item>& items) {
   records_.reserve(records_.size() + items.size());
   box_of_record_.reserve(records_.size() + items.size());
+  rests_.reserve(kernels::active().find_rests != nullptr ? records_.size() + items.size() : 0);
   for (const Item& item : items) {
     records_.push_back(recordOf(boxes.prepared(item.box)));
     has_aligned_ = has_aligned_ || records_.back().isAligned();
     box_of_record_.push_back(item.box);
+    setRests(boxes, records_.size() - 1);
+  }
+}
+
+void BoxTree::setRests(const SceneBoxes& boxes, std::size_t record) {
+  const auto find = kernels::active().find_rests;
+  if (find == nullptr) {
+    return;
+  }
+  rests_.resize(records_.size());
+  if (const auto* box = std::get_if<OrientedBox>(&boxes.simplest(box_of_record_[record]))) {
+    find(box->orientation.coeffs().data(), records_[record], rests_[record]);
   }
 }
 
@@ -161,6 +176,7 @@ kernels::SceneView BoxTree::view() const {
   view.around_nodes = &around_nodes_;
   view.leaves = leaves_.data();
   view.records = records_.data();
+  view.rests = rests_.data();
   view.num_records = static_cast<std::uint32_t>(records_.size());
   view.box_of_record = box_of_record_.data();
   double reach = 0.0;

@@ -52,6 +52,7 @@ class BoxTree {
 
  private:
   void addRecords(const SceneBoxes& boxes, const std::vector<Item>& items);
+  void setRests(const SceneBoxes& boxes, std::size_t record);
   void addLeaves();
   void measure();
   void dropAppended();
@@ -63,6 +64,7 @@ class BoxTree {
   kernels::Bounds around_nodes_;            ///< of a list
   std::vector<kernels::LeafBoxes> leaves_;  ///< of the nodes of the lowest level
   std::vector<kernels::BoxRecord> records_;
+  std::vector<kernels::AxisRests> rests_;  ///< of each record, where kernels use them
   std::vector<std::uint32_t> box_of_record_;
   std::vector<std::uint32_t> left_out_;
   double center_[3] = {0.0, 0.0, 0.0};

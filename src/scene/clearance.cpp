@@ -91,36 +91,44 @@ bool Scene::isClear(const Segment& segment, double radius, const BoxMask* mask) 
 }
 
 Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const noexcept {
-  NearestBox nearest(segment, impl_->boxes);
-  const auto offer = [&](std::size_t i, const DistanceBounds& bounds, const auto& estimate) {
-    return nearest.offer(i, bounds, estimate);
-  };
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  if (mask != nullptr || !impl_->tree.left_out().empty() || !isForKernels(segment, impl_->view) ||
-      impl_->kernels.refine == nullptr) {
-    impl_->forEachNear(segment, kInf, true, mask, offer);
+  const SceneBoxes& boxes = impl_->boxes;
+  const kernels::SceneView& view = impl_->view;
+  if (mask != nullptr || !impl_->tree.left_out().empty() || !isForKernels(segment, view) ||
+      impl_->kernels.nearest_one == nullptr) {
+    NearestBox nearest(segment, boxes);
+    impl_->forEachNear(segment, std::numeric_limits<double>::infinity(), true, mask,
+                       [&](std::size_t i, const DistanceBounds& bounds, const auto& estimate) {
+                         return nearest.offer(i, bounds, estimate);
+                       });
     return nearest.clearance();
   }
+  struct Context {
+    const Segment& segment;
+    const SceneBoxes& boxes;
+    NearestOffered offered;
+  } context{segment, boxes, NearestOffered()};
   const auto approach = [](void* to, std::uint32_t box, const kernels::NearBox& near) {
-    return static_cast<NearestBox*>(to)->offer(
-        std::size_t{box}, DistanceBounds{near.lower, near.upper}, [&] { return estimateOf(near); });
+    auto& c = *static_cast<Context*>(to);
+    return c.offered.offer(c.segment, c.boxes, box, near);
   };
+  const kernels::SegmentQuery query = nearestQuery(segment, nullptr);
   kernels::NearestOne one;
-  const bool is_one = impl_->kernels.nearest_one(impl_->view, nearestQuery(segment, nullptr),
-                                                 approach, &nearest, &one, work_of_thread);
+  const bool is_one =
+      impl_->kernels.nearest_one(view, query, approach, &context, &one, work_of_thread);
+  const std::optional<NearestBox>& nearest = context.offered.nearest;
   if (!is_one) {
-    return nearest.clearance();
-  }
-  if (const auto* box = std::get_if<OrientedBox>(&impl_->boxes.simplest(one.box))) {
-    if (const auto refined = refinedByKernel(segment, *box, one.t)) {
-      SegmentDistance d;
-      d.distance = refined->distance;
-      d.t = refined->t;
-      setClosestPoints(segment, *box, d);
-      return {one.box, d.distance, d.t, d.on_segment, d.on_box};
+    if (!context.offered.isApart(view)) {
+      return nearest ? nearest->clearance() : Clearance();
     }
+    one = {context.offered.record, nearest->guess()};
   }
-  return impl_->clearanceTo(segment, one.box);
+  const std::size_t box = view.box_of_record[one.record];
+  kernels::RoundedNearest rounded;
+  if (!impl_->kernels.round_nearest(view, query, one, rounded)) {
+    return is_one ? impl_->clearanceTo(segment, box) : nearest->clearance();
+  }
+  const auto point = [](const double* p) { return Vector3(p[0], p[1], p[2]); };
+  return {box, rounded.distance, rounded.t, point(rounded.on_segment), point(rounded.on_box)};
 }
 
 Blockage Scene::Impl::firstMet(const Segment& segment, const BoxMask* mask) const {

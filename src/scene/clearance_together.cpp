@@ -19,11 +19,12 @@ namespace {
 /// Segments that the kernels get at once: so few that what is found of them stays in cache.
 constexpr std::size_t kSegments = 16;
 
-/// Has a box fetched that will be read.
-void prefetch(const Box& box) {
-  const char* bytes = reinterpret_cast<const char*>(&box);
+/// Has a record fetched that will be read.
+void prefetch(const kernels::SceneView& view, std::uint32_t record) {
+  const char* bytes = reinterpret_cast<const char*>(&view.records[record]);
   __builtin_prefetch(bytes);
-  __builtin_prefetch(bytes + sizeof(Box) - 1);
+  __builtin_prefetch(bytes + 64);
+  __builtin_prefetch(&view.rests[record]);
 }
 
 /// Clearances that are known but for their numbers, eight at a time.
@@ -34,27 +35,16 @@ class Rounding {
       : scene_(scene), segments_(segments), clearances_(clearances) {}
 
   /// @param number of the segment, and of its clearance
-  /// @param box which is nearest, certainly not met, near the parameter t
-  void add(std::size_t number, std::size_t box, double t) {
-    const auto* oriented = std::get_if<OrientedBox>(&scene_.boxes.simplest(box));
-    if (oriented == nullptr) {
-      clearances_[number] = scene_.clearanceTo(segments_[number], box);
-      return;
-    }
+  void add(std::size_t number, const kernels::NearestOne& one) {
     const auto k = static_cast<std::size_t>(count_);
     for (int i = 0; i < 3; ++i) {
-      queries_.center[i][k] = oriented->center[i];
-      queries_.half_extents[i][k] = oriented->half_extents[i];
       queries_.start[i][k] = segments_[number].start[i];
       queries_.end[i][k] = segments_[number].end[i];
     }
-    for (int i = 0; i < 4; ++i) {
-      queries_.quaternion[i][k] = oriented->orientation.coeffs()[i];
-    }
-    queries_.t[k] = t;
+    queries_.t[k] = one.t;
+    queries_.record[k] = one.record;
     numbers_[k] = number;
-    boxes_[k] = box;
-    if (++count_ == kernels::kRefineLanes) {
+    if (++count_ == kernels::kRoundLanes) {
       finish();
     }
   }
@@ -63,19 +53,20 @@ class Rounding {
     if (count_ == 0) {
       return;
     }
-    kernels::RefinedEach refined;
-    const std::uint32_t certain = scene_.kernels.refine_together(queries_, refined);
+    kernels::RoundedEach rounded;
+    const std::uint32_t certain = scene_.kernels.round_together(scene_.view, queries_, rounded);
     for (std::size_t k = 0; k < static_cast<std::size_t>(count_); ++k) {
       Clearance& clearance = clearances_[numbers_[k]];
+      const std::size_t box = scene_.view.box_of_record[queries_.record[k]];
       if (((certain >> k) & 1U) == 0) {
-        clearance = scene_.clearanceTo(segments_[numbers_[k]], boxes_[k]);
+        clearance = scene_.clearanceTo(segments_[numbers_[k]], box);
         continue;
       }
-      const auto point = [k](const double(*lanes)[kernels::kRefineLanes]) {
+      const auto point = [k](const double(*lanes)[kernels::kRoundLanes]) {
         return Vector3(lanes[0][k], lanes[1][k], lanes[2][k]);
       };
-      clearance = {boxes_[k], refined.distance[k], refined.t[k], point(refined.on_segment),
-                   point(refined.on_box)};
+      clearance = {box, rounded.distance[k], rounded.t[k], point(rounded.on_segment),
+                   point(rounded.on_box)};
     }
     count_ = 0;
   }
@@ -84,9 +75,8 @@ class Rounding {
   const Impl& scene_;
   const Segment* segments_;
   Clearance* clearances_;
-  kernels::RefineQueries queries_{};
-  std::size_t numbers_[kernels::kRefineLanes];
-  std::size_t boxes_[kernels::kRefineLanes];
+  kernels::RoundQueries queries_{};
+  std::size_t numbers_[kernels::kRoundLanes];
   int count_ = 0;
 };
 
@@ -95,18 +85,13 @@ struct Nearest {
   const Segment* segments;
   const SceneBoxes& boxes;
   std::size_t numbers[kSegments];
-  std::optional<NearestBox> offered[kSegments];
+  NearestOffered offered[kSegments];
 
+  Nearest(const Segment* all, const SceneBoxes& scene) : segments(all), boxes(scene) {}
   static double offer(void* context, std::size_t query, std::uint32_t box,
                       const kernels::NearBox& near) {
-    return static_cast<Nearest*>(context)->of(query).offer(
-        std::size_t{box}, DistanceBounds{near.lower, near.upper}, [&] { return estimateOf(near); });
-  }
-  NearestBox& of(std::size_t query) {
-    if (!offered[query]) {
-      offered[query].emplace(segments[numbers[query]], boxes);
-    }
-    return *offered[query];
+    Nearest& self = *static_cast<Nearest*>(context);
+    return self.offered[query].offer(self.segments[self.numbers[query]], self.boxes, box, near);
   }
 };
 
@@ -119,6 +104,17 @@ Clearance Scene::Impl::clearanceTo(const Segment& segment, std::size_t box) cons
   return nearest.clearance();
 }
 
+void Scene::Impl::offerOthers(const Segment& segment, const BoxMask* mask,
+                              NearestOffered& offered) const {
+  if (!offered.nearest) {
+    offered.nearest.emplace(segment, boxes);
+  }
+  forEachOther(tree, true, boxes.size(), mask, [&](std::size_t box) {
+    const NearestEstimate estimate = estimateOf(segment, boxes.prepared(box));
+    return offered.nearest->offer(box, estimate.bounds, [&] { return estimate; }) >= 0.0;
+  });
+}
+
 void Scene::clearance(const Segment* segments, std::size_t count, Clearance* clearances,
                       const BoxMask* mask) const noexcept {
   if (impl_->kernels.nearest_together == nullptr) {
@@ -127,46 +123,45 @@ void Scene::clearance(const Segment* segments, std::size_t count, Clearance* cle
     }
     return;
   }
-  constexpr std::uint32_t kNone = ~std::uint32_t{0};
+  const kernels::SceneView& view = impl_->view;
   const bool are_others = !impl_->tree.left_out().empty();
   Rounding<Impl> rounding(*impl_, segments, clearances);
   for (std::size_t first = 0; first < count; first += kSegments) {
     const std::size_t end = std::min(first + kSegments, count);
     kernels::SegmentQuery queries[kSegments];
     kernels::NearestOne ones[kSegments];
-    Nearest nearest{segments, impl_->boxes, {}, {}};
+    Nearest nearest(segments, impl_->boxes);
     std::size_t taken = 0;
     for (std::size_t i = first; i < end; ++i) {
-      if (isForKernels(segments[i], impl_->view)) {
-        ones[taken].box = kNone;
+      if (isForKernels(segments[i], view)) {
+        ones[taken].record = kNoRecord;
         nearest.numbers[taken] = i;
         queries[taken++] = nearestQuery(segments[i], mask);
       } else {
         clearances[i] = clearance(segments[i], mask);
       }
     }
-    impl_->kernels.nearest_together(impl_->view, queries, taken, Nearest::offer, &nearest,
+    impl_->kernels.nearest_together(view, queries, taken, Nearest::offer, &nearest,
                                     are_others ? nullptr : ones, work_of_thread);
     for (std::size_t k = 0; k < taken; ++k) {
-      if (ones[k].box != kNone) {
-        prefetch(impl_->boxes.simplest(ones[k].box));
+      if (ones[k].record != kNoRecord) {
+        prefetch(view, ones[k].record);
       }
     }
     for (std::size_t k = 0; k < taken; ++k) {
       const std::size_t i = nearest.numbers[k];
-      if (ones[k].box != kNone) {
-        rounding.add(i, ones[k].box, ones[k].t);
+      if (ones[k].record != kNoRecord) {
+        rounding.add(i, ones[k]);
         continue;
       }
-      NearestBox& offered = nearest.of(k);
-      forEachOther(impl_->tree, true, impl_->boxes.size(), mask, [&](std::size_t box) {
-        const NearestEstimate estimate = estimateOf(segments[i], impl_->boxes.prepared(box));
-        return offered.offer(box, estimate.bounds, [&] { return estimate; }) >= 0.0;
-      });
-      if (offered.isApart()) {
-        rounding.add(i, offered.index(), offered.guess());
+      NearestOffered& offered = nearest.offered[k];
+      if (are_others || !offered.nearest) {
+        impl_->offerOthers(segments[i], mask, offered);
+      }
+      if (offered.isApart(view)) {
+        rounding.add(i, {offered.record, offered.nearest->guess()});
       } else {
-        clearances[i] = offered.clearance();
+        clearances[i] = offered.nearest->clearance();
       }
     }
   }

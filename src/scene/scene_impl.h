@@ -15,6 +15,7 @@ template <typename T>
 class FirstEntered;
 template <typename Decide>
 struct Undecided;
+struct NearestOffered;
 
 struct Scene::Impl {
   explicit Impl(std::vector<Box> all);
@@ -67,6 +68,9 @@ struct Scene::Impl {
   template <typename Visit>
   void forEachNear(const Segment& segment, double bound, bool shrinks, const BoxMask* mask,
                    Visit&& visit) const;
+
+  /// Offers the boxes that kernels do not look at.
+  void offerOthers(const Segment& segment, const BoxMask* mask, NearestOffered& offered) const;
 
   /// Of a segment to a box that is known to be the nearest.
   Clearance clearanceTo(const Segment& segment, std::size_t box) const;

@@ -7,6 +7,7 @@
 #include "scene/candidates.h"
 #include "scene/counters.h"
 #include "scene/first_entered.h"
+#include "scene/nearest_box.h"
 #include "scene/scene_impl.h"
 
 #include <cmath>
@@ -177,6 +178,31 @@ inline NearestEstimate estimateOf(const Segment& segment, const PreparedBox& box
   }
   return {};
 }
+
+constexpr std::uint32_t kNoRecord = ~std::uint32_t{0};
+
+/// The nearest of the boxes that a kernel offers.
+struct NearestOffered {
+  std::optional<NearestBox> nearest;
+  std::uint32_t record = kNoRecord;  ///< of that box
+
+  NearestOffered() {}  // NOLINT(modernize-use-equals-default): as Nearby
+  double offer(const Segment& segment, const SceneBoxes& boxes, std::uint32_t box,
+               const kernels::NearBox& near) {
+    if (!nearest) {
+      nearest.emplace(segment, boxes);
+    }
+    const double bound = nearest->offer(std::size_t{box}, DistanceBounds{near.lower, near.upper},
+                                        [&] { return estimateOf(near); });
+    record = nearest->index() == box ? near.record : record;
+    return bound;
+  }
+  /// Whether its distance is for kernels to round.
+  bool isApart(const kernels::SceneView& view) const {
+    return nearest && nearest->isApart() && record != kNoRecord &&
+           view.box_of_record[record] == nearest->index();
+  }
+};
 
 template <typename Visit>
 void Scene::Impl::forEachNear(const Segment& segment, double bound, bool shrinks,

@@ -4,6 +4,7 @@
 #include "scene/box_tree.h"
 #include "scene/tree_builder.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -78,6 +79,7 @@ void BoxTree::dropAppended() {
   }
   leaves_.resize(built_nodes_.front());
   records_.resize(built_records_);
+  rests_.resize(std::min(rests_.size(), built_records_));
   box_of_record_.resize(built_records_);
 }
 
@@ -110,6 +112,7 @@ bool BoxTree::moveBoxes(const SceneBoxes& boxes, const BoxChanges& changes) {
       }
       setSlot(leaves.bounds[node], slot, bounds);
       records_[k] = recordOf(prepared);
+      setRests(boxes, k);
       setSlot(leaves_[node], slot, records_[k], center_);
       has_aligned_ = has_aligned_ || records_[k].isAligned();
     }

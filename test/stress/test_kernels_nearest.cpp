@@ -98,7 +98,8 @@ void checkNearest(const kernels::Kernels& kernels, const std::vector<Box>& boxes
     EXPECT_TRUE(!is_one || least > 0.0);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (!std::isinf(truth[i]) && truth[i] == least) {
-        EXPECT_TRUE(is_one ? one.box == i : several.offered.count(i) == 1) << "box " << i;
+        EXPECT_TRUE(is_one ? view.box_of_record[one.record] == i : several.offered.count(i) == 1)
+            << "box " << i;
         EXPECT_EQ(1U, every.offered.count(i)) << "box " << i;
       }
     }
@@ -217,8 +218,9 @@ TEST_P(NearestKernelTest, OfferTheNearestOfManySegments) {
           }
         }
         EXPECT_EQ(least, searches.bounds[k]) << "segment " << k << " among " << count << " boxes";
-        const bool is_one = ones[k].box != kNone;
-        EXPECT_EQ(least, is_one ? distanceTo(segments[k], boxes[ones[k].box]) : others.bounds[k]);
+        const bool is_one = ones[k].record != kNone;
+        EXPECT_EQ(least, is_one ? distanceTo(segments[k], boxes[view.box_of_record[ones[k].record]])
+                                : others.bounds[k]);
         num_ones += is_one ? 1 : 0;
       }
     }

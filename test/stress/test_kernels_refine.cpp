@@ -5,6 +5,8 @@
 #include "geometry/distance_query.h"
 #include "geometry/prepared_box.h"
 #include "kernels/kernels.h"
+#include "scene/box_bounds.h"
+#include "scene/search.h"
 #include "stress/families.h"
 #include "stress/kernel_scenes.h"
 
@@ -78,80 +80,117 @@ TEST_P(RefineKernelTest, ErrorsEncloseTheExactDistance) {
 
 /// Eight segments and boxes for a kernel.
 struct Pairs {
-  kernels::RefineQueries queries{};
   std::vector<Sample> samples;
+  std::vector<kernels::BoxRecord> records;
+  std::vector<kernels::AxisRests> rests;
+  kernels::RoundQueries queries{};
 
-  void add(const Sample& sample, double t) {
+  void add(const kernels::Kernels& kernels, const Sample& sample, double t) {
     const std::size_t k = samples.size();
     const auto& box = std::get<OrientedBox>(sample.box);
     const Segment segment = sample.segment();
     for (int i = 0; i < 3; ++i) {
-      queries.center[i][k] = box.center[i];
-      queries.half_extents[i][k] = box.half_extents[i];
       queries.start[i][k] = segment.start[i];
       queries.end[i][k] = segment.end[i];
     }
-    for (int i = 0; i < 4; ++i) {
-      queries.quaternion[i][k] = box.orientation.coeffs()[i];
-    }
     queries.t[k] = t;
+    queries.record[k] = static_cast<std::uint32_t>(k);
     samples.push_back(sample);
+    records.push_back(recordOf(PreparedBox(box)));
+    rests.emplace_back();
+    kernels.find_rests(box.orientation.coeffs().data(), records.back(), rests.back());
+  }
+
+  /// (Only these fields of a scene are read.)
+  kernels::SceneView view() const {
+    kernels::SceneView view{};
+    view.records = records.data();
+    view.rests = rests.data();
+    return view;
   }
 };
 
-/// @return how many the kernel is certain about
-int checkTogether(const kernels::Kernels& kernels, const Pairs& pairs) {
-  kernels::RefinedEach refined;
-  const std::uint32_t certain = kernels.refine_together(pairs.queries, refined);
-  for (std::size_t k = 0; k < pairs.samples.size(); ++k) {
-    if (((certain >> k) & 1U) == 0) {
-      continue;
-    }
-    const Sample& sample = pairs.samples[k];
-    const SegmentDistance d = distance(sample.segment(), std::get<OrientedBox>(sample.box));
-    EXPECT_EQ(d.distance, refined.distance[k]);
-    EXPECT_EQ(d.t, refined.t[k]);
+/// One distance of many, as `distance()` has it, and the same if it is rounded alone.
+/// @return whether the kernel is certain alone too
+bool checkRounded(const kernels::Kernels& kernels, const Pairs& pairs, std::size_t k,
+                  const kernels::RoundedEach* of_many) {
+  const Segment segment = pairs.samples[k].segment();
+  const SegmentDistance d = distance(segment, std::get<OrientedBox>(pairs.samples[k].box));
+  kernels::RoundedNearest alone;
+  const bool is_certain =
+      kernels.round_nearest(pairs.view(), nearestQuery(segment, nullptr),
+                            {static_cast<std::uint32_t>(k), pairs.queries.t[k]}, alone);
+  const auto expectSame = [&](double distance, double t, auto&& on_segment, auto&& on_box) {
+    EXPECT_EQ(d.distance, distance);
+    EXPECT_EQ(d.t, t);
     for (int i = 0; i < 3; ++i) {
-      EXPECT_EQ(d.on_segment[i], refined.on_segment[i][k]);
-      EXPECT_EQ(d.on_box[i], refined.on_box[i][k]);
-      EXPECT_EQ(std::signbit(d.on_box[i]), std::signbit(refined.on_box[i][k]));
+      EXPECT_EQ(d.on_segment[i], on_segment(i));
+      EXPECT_EQ(d.on_box[i], on_box(i));
+      EXPECT_EQ(std::signbit(d.on_box[i]), std::signbit(on_box(i)));
     }
+  };
+  if (is_certain) {
+    expectSame(
+        alone.distance, alone.t, [&](int i) { return alone.on_segment[i]; },
+        [&](int i) { return alone.on_box[i]; });
   }
-  return __builtin_popcount(certain);
+  if (of_many != nullptr) {
+    expectSame(
+        of_many->distance[k], of_many->t[k], [&](int i) { return of_many->on_segment[i][k]; },
+        [&](int i) { return of_many->on_box[i][k]; });
+  }
+  return is_certain;
+}
+
+struct Certain {
+  int together = 0;
+  int alone = 0;
+};
+
+void checkTogether(const kernels::Kernels& kernels, const Pairs& pairs, Certain& certain) {
+  kernels::RoundedEach rounded;
+  const std::uint32_t bits = kernels.round_together(pairs.view(), pairs.queries, rounded);
+  for (std::size_t k = 0; k < pairs.samples.size(); ++k) {
+    const bool is_certain = ((bits >> k) & 1U) != 0;
+    certain.together += is_certain ? 1 : 0;
+    certain.alone += checkRounded(kernels, pairs, k, is_certain ? &rounded : nullptr) ? 1 : 0;
+  }
 }
 
 /// From guesses that are as good as double, or as float, or bad.
-TEST_P(RefineKernelTest, WhatIsCertainOfManyIsRoundedAsEachIs) {
-  if (GetParam()->refine_together == nullptr) {
+TEST_P(RefineKernelTest, WhatIsCertainIsRoundedAsItIsWithoutAScene) {
+  if (GetParam()->round_together == nullptr) {
     return;  // this kernel leaves it to others
   }
   constexpr std::size_t kGuesses = 4;
-  int certain[kGuesses] = {};
+  Certain certain[kGuesses];
   for (std::size_t family = 0; family < familyNames().size(); ++family) {
     SCOPED_TRACE(familyNames()[family]);
     std::vector<Pairs> pairs(kGuesses);
     for (std::uint64_t index = 0; index < 1000; ++index) {
       const Sample sample = makeSample(family, true, 32, index);
-      if (alignedForm(std::get<OrientedBox>(sample.box))) {
-        continue;  // distance() sees it as an aligned box
+      const auto& box = std::get<OrientedBox>(sample.box);
+      const NearestEstimate estimate = estimateNearest(sample.segment(), doubleSlabs(box));
+      if (alignedForm(box) || !isModerate(box) || !(estimate.bounds.lower > 0.0)) {
+        continue;  // in no record as it is, or met
       }
-      const double t =
-          estimateNearest(sample.segment(), doubleSlabs(std::get<OrientedBox>(sample.box))).guess.t;
+      const double t = estimate.guess.t;
       const double guesses[kGuesses] = {t, static_cast<float>(t), std::min(1.001 * t, 1.0),
                                         index % 2 == 0 ? 0.0 : 1.0};
       for (std::size_t g = 0; g < kGuesses; ++g) {
-        pairs[g].add(sample, guesses[g]);
-        if (pairs[g].samples.size() == kernels::kRefineLanes) {
-          certain[g] += checkTogether(*GetParam(), pairs[g]);
+        pairs[g].add(*GetParam(), sample, guesses[g]);
+        if (pairs[g].samples.size() == kernels::kRoundLanes) {
+          checkTogether(*GetParam(), pairs[g], certain[g]);
           pairs[g] = Pairs();
         }
       }
     }
   }
-  EXPECT_GT(certain[0], 3500);
-  EXPECT_GT(certain[1], 3500);
-  EXPECT_GT(certain[2], 2500);
-  EXPECT_GT(certain[3], 800);
+  const int least[kGuesses] = {2500, 2500, 2000, 800};
+  for (std::size_t g = 0; g < kGuesses; ++g) {
+    EXPECT_GT(certain[g].together, least[g]);
+    EXPECT_GT(certain[g].alone, least[g]);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, RefineKernelTest, testing::ValuesIn(allKernels()), nameOf);

@@ -171,6 +171,9 @@ static inline void loadRays(const double* rays, Double4 center, Float16* origin,
 /// What boxes of a block are compared in, where there are more than eight.
 using BlockLanes = Float8;
 
+/// Whether two vectors are sooner worked on in one register.
+constexpr bool kTwoAtOnce = false;
+
 /// Eight doubles in two AVX registers.
 struct Double8 {
   __m256d v[2];
@@ -228,6 +231,21 @@ static inline Double8 smaller(const Double8& a, const Double8& b) {
 }
 static inline Double8 squareRoot(const Double8& a) {
   return {{_mm256_sqrt_pd(a.v[0]), _mm256_sqrt_pd(a.v[1])}};
+}
+
+/// Lane i of the k-th of eight is lane k of the i-th of four then.
+static inline void transpose(const Double4* rows, Double8* columns) {
+  for (int half = 0; half < 2; ++half) {
+    const Double4* four = rows + 4 * half;
+    const __m256d even[2] = {_mm256_unpacklo_pd(four[0].v, four[1].v),
+                             _mm256_unpacklo_pd(four[2].v, four[3].v)};
+    const __m256d odd[2] = {_mm256_unpackhi_pd(four[0].v, four[1].v),
+                            _mm256_unpackhi_pd(four[2].v, four[3].v)};
+    columns[0].v[half] = _mm256_permute2f128_pd(even[0], even[1], 0x20);
+    columns[1].v[half] = _mm256_permute2f128_pd(odd[0], odd[1], 0x20);
+    columns[2].v[half] = _mm256_permute2f128_pd(even[0], even[1], 0x31);
+    columns[3].v[half] = _mm256_permute2f128_pd(odd[0], odd[1], 0x31);
+  }
 }
 
 /// Lanes in which something holds.

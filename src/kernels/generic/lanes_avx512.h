@@ -9,6 +9,7 @@ struct Float16 {
 /// 105593); with a full mask it makes the same instructions.
 constexpr __mmask16 kAllLanes = 0xffff;
 constexpr __mmask8 kEightLanes = 0xff;
+constexpr __mmask8 kFourLanes = 0xf;
 
 static inline Float16 load16(const float* p) {
   return {_mm512_load_ps(p)};
@@ -143,6 +144,9 @@ static inline void loadRays(const double* rays, Double4 center, Float16* origin,
 /// What boxes of a block are compared in, where there are more than eight.
 using BlockLanes = Float16;
 
+/// Whether two vectors are sooner worked on in one register.
+constexpr bool kTwoAtOnce = true;
+
 /// Eight doubles in an AVX-512 register.
 struct Double8 {
   __m512d v;
@@ -196,6 +200,51 @@ static inline Double8 smaller(Double8 a, Double8 b) {
 }
 static inline Double8 squareRoot(Double8 a) {
   return {_mm512_maskz_sqrt_pd(kEightLanes, a.v)};
+}
+
+/// Four lanes each of a and of b.
+static inline Double8 joined(Double4 a, Double4 b) {
+  return {_mm512_maskz_insertf64x4(kEightLanes, _mm512_castpd256_pd512(a.v), b.v, 1)};
+}
+/// a in each half.
+static inline Double8 repeated(Double4 a, Double8 /*like*/) {
+  return {_mm512_maskz_broadcast_f64x4(kEightLanes, a.v)};
+}
+static inline Double4 firstHalf(Double8 a) {
+  return {_mm512_maskz_extractf64x4_pd(kFourLanes, a.v, 0)};
+}
+static inline Double4 secondHalf(Double8 a) {
+  return {_mm512_maskz_extractf64x4_pd(kFourLanes, a.v, 1)};
+}
+/// Of each half: lane k everywhere.
+template <int k>
+static inline Double8 spread(Double8 a) {
+  return {_mm512_maskz_permutex_pd(kEightLanes, a.v, k | (k << 2) | (k << 4) | (k << 6))};
+}
+/// Of each half: (y, z, x) of (x, y, z), and (z, x, y).
+static inline Double8 turned(Double8 a) {
+  return {_mm512_maskz_permutex_pd(kEightLanes, a.v, _MM_SHUFFLE(3, 0, 2, 1))};
+}
+static inline Double8 turnedTwice(Double8 a) {
+  return {_mm512_maskz_permutex_pd(kEightLanes, a.v, _MM_SHUFFLE(3, 1, 0, 2))};
+}
+
+/// Lane i of the k-th of eight is lane k of the i-th of four then.
+static inline void transpose(const Double4* rows, Double8* columns) {
+  const __m512i lows = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+  const __m512i highs = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+  Double8 four[4];  // rows k and k + 4
+  for (int k = 0; k < 4; ++k) {
+    four[k] = joined(rows[k], rows[k + 4]);
+  }
+  const __m512d even[2] = {_mm512_maskz_unpacklo_pd(kEightLanes, four[0].v, four[1].v),
+                           _mm512_maskz_unpacklo_pd(kEightLanes, four[2].v, four[3].v)};
+  const __m512d odd[2] = {_mm512_maskz_unpackhi_pd(kEightLanes, four[0].v, four[1].v),
+                          _mm512_maskz_unpackhi_pd(kEightLanes, four[2].v, four[3].v)};
+  columns[0] = {_mm512_permutex2var_pd(even[0], lows, even[1])};
+  columns[1] = {_mm512_permutex2var_pd(odd[0], lows, odd[1])};
+  columns[2] = {_mm512_permutex2var_pd(even[0], highs, even[1])};
+  columns[3] = {_mm512_permutex2var_pd(odd[0], highs, odd[1])};
 }
 
 /// Lanes in which something holds.

@@ -16,6 +16,9 @@ static inline Double4 all4(double x) {
 static inline Double4 lanes4(const double* p) {
   return {_mm256_setr_pd(p[0], p[1], p[2], 0.0)};
 }
+static inline Double4 lanes4(double x, double y, double z) {
+  return {_mm256_setr_pd(x, y, z, 0.0)};
+}
 static inline Double4 operator+(Double4 a, Double4 b) {
   return {_mm256_add_pd(a.v, b.v)};
 }
@@ -111,6 +114,14 @@ static inline Double4 orZeroWhereZero(Double4 a, Double4 b) {
 static inline double firstLane(Double4 a) {
   return _mm256_cvtsd_f64(a.v);
 }
+static inline Double4 asDoubles(const float* p) {
+  return {_mm256_cvtps_pd(_mm_load_ps(p))};
+}
+/// Lanes of b where `bits` has theirs, of a elsewhere.
+template <int kBits>
+static inline Double4 replaced(Double4 a, Double4 b) {
+  return {_mm256_blend_pd(a.v, b.v, kBits)};
+}
 static inline void storeAsFloats(float* p, Double4 a) {
   _mm_store_ps(p, _mm256_cvtpd_ps(a.v));
 }
@@ -135,12 +146,36 @@ static inline Double4 turned(Double4 a) {
 static inline Double4 turnedTwice(Double4 a) {
   return {_mm256_permute4x64_pd(a.v, _MM_SHUFFLE(3, 1, 0, 2))};
 }
+/// As often as there are halves of four lanes in what it is to be like.
+static inline Double4 repeated(Double4 a, Double4 /*like*/) {
+  return a;
+}
+/// Lane k everywhere.
+template <int k>
+static inline Double4 spread(Double4 a) {
+  return {_mm256_permute4x64_pd(a.v, k | (k << 2) | (k << 4) | (k << 6))};
+}
+/// Lane i of the j-th is lane j of the i-th then, for the first three; the fourth lanes are
+/// nothing.
+static inline void transpose3(Double4* a) {
+  const __m256d low = _mm256_unpacklo_pd(a[0].v, a[1].v);   // 00 10 02 12
+  const __m256d high = _mm256_unpackhi_pd(a[0].v, a[1].v);  // 01 11
+  const __m256d last = a[2].v;                              // 20 21 22
+  a[0].v = _mm256_insertf128_pd(low, _mm256_castpd256_pd128(last), 1);
+  a[1].v = _mm256_insertf128_pd(
+      high, _mm_unpackhi_pd(_mm256_castpd256_pd128(last), _mm256_castpd256_pd128(last)), 1);
+  a[2].v = _mm256_permute2f128_pd(low, last, 0x31);
+}
 static inline void store4(double* p, Double4 a) {
   _mm256_store_pd(p, a.v);
 }
 /// A bit for each of the first three lanes in which a >= b, and in which the sign is set.
 static inline unsigned notBelow3(Double4 a, Double4 b) {
   return static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(a.v, b.v, _CMP_GE_OQ))) & 7U;
+}
+static inline bool isSame3(Double4 a, Double4 b) {
+  return (static_cast<unsigned>(_mm256_movemask_pd(_mm256_cmp_pd(a.v, b.v, _CMP_EQ_OQ))) & 7U) ==
+         7U;
 }
 static inline unsigned signs3(Double4 a) {
   return static_cast<unsigned>(_mm256_movemask_pd(a.v)) & 7U;

@@ -255,6 +255,7 @@ class NearestSearch {
     work_.turned_boxes += view_.records[record].isAligned() ? 0 : 1;
     NearBox near;
     estimate(view_.records[record], query_, near);
+    near.record = record;
     const double bound = approach_(context_, box, near);
     if (bound < 0.0) {
       return false;

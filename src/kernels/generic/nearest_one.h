@@ -166,6 +166,7 @@ static void offerListed(const SceneView& view, const SegmentQuery& query, const 
       work.turned_boxes += view.records[record].isAligned() ? 0 : 1;
       NearBox near;
       estimate(view.records[record], query, near);
+      near.record = record;
       const float next = boundInFloat(approach(context, view.box_of_record[record], near));
       bound = next < bound ? next : bound;
     }
@@ -177,7 +178,7 @@ static bool decide(const SceneView& view, const SegmentQuery& query, NearestList
                    Approach approach, void* context, NearestOne* one, Work& work) {
   list.tidy();
   if (list.isOne() && one != nullptr) {
-    *one = {view.box_of_record[list.best()], list.t()};
+    *one = {list.best(), list.t()};
     return true;
   }
   if (list.isFull()) {
