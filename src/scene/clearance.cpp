@@ -90,6 +90,17 @@ bool Scene::isClear(const Segment& segment, double radius, const BoxMask* mask) 
   return clear;
 }
 
+Clearance Scene::Impl::clearanceTo(const Segment& segment, const kernels::SegmentQuery& query,
+                                   const kernels::NearestOne& one) const {
+  const std::size_t box = view.box_of_record[one.record];
+  kernels::RoundedNearest rounded;
+  if (!kernels.round_nearest(view, query, one, rounded)) {
+    return clearanceTo(segment, box);
+  }
+  const auto point = [](const double* p) { return Vector3(p[0], p[1], p[2]); };
+  return {box, rounded.distance, rounded.t, point(rounded.on_segment), point(rounded.on_box)};
+}
+
 Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const noexcept {
   const SceneBoxes& boxes = impl_->boxes;
   const kernels::SceneView& view = impl_->view;
@@ -122,13 +133,7 @@ Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const no
     }
     one = {context.offered.record, nearest->guess()};
   }
-  const std::size_t box = view.box_of_record[one.record];
-  kernels::RoundedNearest rounded;
-  if (!impl_->kernels.round_nearest(view, query, one, rounded)) {
-    return is_one ? impl_->clearanceTo(segment, box) : nearest->clearance();
-  }
-  const auto point = [](const double* p) { return Vector3(p[0], p[1], p[2]); };
-  return {box, rounded.distance, rounded.t, point(rounded.on_segment), point(rounded.on_box)};
+  return impl_->clearanceTo(segment, query, one);
 }
 
 Blockage Scene::Impl::firstMet(const Segment& segment, const BoxMask* mask) const {

@@ -59,7 +59,9 @@ class Rounding {
       Clearance& clearance = clearances_[numbers_[k]];
       const std::size_t box = scene_.view.box_of_record[queries_.record[k]];
       if (((certain >> k) & 1U) == 0) {
-        clearance = scene_.clearanceTo(segments_[numbers_[k]], box);
+        const kernels::NearestOne one = {queries_.record[k], queries_.t[k]};
+        clearance = scene_.clearanceTo(segments_[numbers_[k]],
+                                       nearestQuery(segments_[numbers_[k]], nullptr), one);
         continue;
       }
       const auto point = [k](const double(*lanes)[kernels::kRoundLanes]) {

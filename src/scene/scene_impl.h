@@ -72,6 +72,10 @@ struct Scene::Impl {
   /// Offers the boxes that kernels do not look at.
   void offerOthers(const Segment& segment, const BoxMask* mask, NearestOffered& offered) const;
 
+  /// Of a segment to a box that it certainly does not meet, known to be the nearest.
+  /// @param query the same segment
+  Clearance clearanceTo(const Segment& segment, const kernels::SegmentQuery& query,
+                        const kernels::NearestOne& one) const;
   /// Of a segment to a box that is known to be the nearest.
   Clearance clearanceTo(const Segment& segment, std::size_t box) const;
 

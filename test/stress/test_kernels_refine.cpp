@@ -187,9 +187,10 @@ TEST_P(RefineKernelTest, WhatIsCertainIsRoundedAsItIsWithoutAScene) {
     }
   }
   const int least[kGuesses] = {2500, 2500, 2000, 800};
+  const int least_alone[kGuesses] = {2500, 2500, 2500, 2000};  // guessed again
   for (std::size_t g = 0; g < kGuesses; ++g) {
     EXPECT_GT(certain[g].together, least[g]);
-    EXPECT_GT(certain[g].alone, least[g]);
+    EXPECT_GT(certain[g].alone, least_alone[g]);
   }
 }
 

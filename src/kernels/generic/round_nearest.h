@@ -31,20 +31,40 @@ static inline bool roundTo(const double* x, double error, double& value) {
   return value == x[0] + (x[1] + error);
 }
 
+/// Both, if that is certain.
+static inline bool isRounded(const Refined& refined, RoundedNearest& nearest) {
+  return roundTo(refined.t, refined.t_error, nearest.t) &&
+         roundTo(refined.distance, refined.distance_error, nearest.distance) &&
+         (!refined.inside || (nearest.t > 0.0 && nearest.t < 1.0));
+}
+
+/// A guess from floats may be far from the nearest point, or beside another part of the box: what
+/// is refined from there is nearer.
+constexpr int kGuesses = 3;
+
 static bool roundNearest(const SceneView& view, const SegmentQuery& query, const NearestOne& one,
                          RoundedNearest& nearest) {
   const BoxRecord& box = view.records[one.record];
+  if (box.isAligned()) {
+    return false;
+  }
   const Double4 start = lanes4(query.start);
   const Double4 end = lanes4(query.end);
   const Double4 center = lanes4(box.column[0][3], box.column[1][3], box.column[2][3]);
-  Refined refined;
-  const bool is_certain = refineIn(boxFrame(box, view.rests[one.record]), center, load4(box.extent),
-                                   start, end, one.t, refined);
-  if (!(is_certain && roundTo(refined.t, refined.t_error, nearest.t) &&
-        roundTo(refined.distance, refined.distance_error, nearest.distance) &&
-        (!refined.inside || (nearest.t > 0.0 && nearest.t < 1.0)) && !box.isAligned())) {
-    return false;
+  const BoxFrame frame = boxFrame(box, view.rests[one.record]);
+  double t = one.t;
+  for (int guess = 0; guess < kGuesses; ++guess) {
+    Refined refined;
+    if (refineIn(frame, center, load4(box.extent), start, end, t, refined) &&
+        isRounded(refined, nearest)) {
+      setClosestPoints(box, center, start, end, nearest);
+      return true;
+    }
+    const double next = refined.t[0] < 0.0 ? 0.0 : refined.t[0] > 1.0 ? 1.0 : refined.t[0];
+    if (next == t) {
+      return false;
+    }
+    t = next;
   }
-  setClosestPoints(box, center, start, end, nearest);
-  return true;
+  return false;
 }
