@@ -7,10 +7,12 @@
 #include "geometry/distance_query.h"
 #include "geometry/flat_distance.h"
 #include "geometry/prepared_box.h"
+#include "geometry/solve.h"
 
 #include <box_query/distance.h>
 #include <box_query/intersection.h>
 
+#include <optional>
 #include <utility>
 
 namespace box_query {
@@ -21,14 +23,27 @@ NearestEstimate estimateOf(const Segment& segment, const BoxType& box) {
   return estimateNearest(segment, doubleSlabs(box));
 }
 
+/// The parameter from which on a segment is in a box.
+template <typename BoxType>
+std::optional<double> firstMeeting(const Segment& segment, const BoxType& box,
+                                   const SegmentSlabs& slabs) {
+  if (startsInside(slabs)) {
+    return 0.0;
+  }
+  Solution solution = solve(segment, doubleComponent(segment), box);
+  return solution.num_points > 0
+             ? std::optional<double>(roundedParameter(segment, box, solution, End::kEnter))
+             : std::nullopt;
+}
+
 template <typename BoxType>
 RoundedDistance nearestOf(const Segment& segment, const BoxType& box, const NearestEstimate& e) {
   if (e.bounds.lower > 0.0) {
     if (const auto refined = refinedDistance(segment, box, e.slabs, e.guess)) {
       return *refined;
     }
-  } else if (testIntersection(segment, box)) {
-    return {0.0, findIntersection(segment, box).t_enter};
+  } else if (const auto t = firstMeeting(segment, box, e.slabs)) {
+    return {0.0, *t};
   }
   if (const auto flat = flatDistance(segment, box)) {
     return {exact::roundedSqrt(flat->squared, 1.0),

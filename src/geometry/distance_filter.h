@@ -52,6 +52,13 @@ struct SegmentSlabs {
   }
 };
 
+/// Whether the segment certainly starts in the box.
+inline bool startsInside(const SegmentSlabs& s) {
+  const double error = s.error();
+  return s.isInRange() && s.below[0] < -error && s.above[0] > error && s.below[1] < -error &&
+         s.above[1] > error && s.below[2] < -error && s.above[2] > error;
+}
+
 inline double scaleOf(const SegmentSlabs& s) {
   double scale = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -57,13 +57,14 @@ class NearestBox {
   NearestBox(const Segment& segment, const SceneBoxes& boxes)
       : segment_(&segment), boxes_(&boxes) {}
 
+  /// @param bounds an upper one of 0 says that the box is met
   /// @param estimate estimate() for the NearestEstimate
   /// @return how near a box must be from now on
   template <typename Estimate>
   double offer(std::size_t index, const DistanceBounds& bounds, Estimate&& estimate) {
     const Box& box = boxes_->simplest(index);
     Nearby other(index, bounds);
-    const bool meets = bounds.lower <= 0.0 && meet(*segment_, box);
+    const bool meets = bounds.upper == 0.0 || (bounds.lower <= 0.0 && meet(*segment_, box));
     // Nothing is nearer than a box that is met.
     const bool is_nearer = meets ? !met_ || index < nearest_.box
                                  : nearest_.box == kNoBox || bounds.upper < nearest_.bounds.lower ||

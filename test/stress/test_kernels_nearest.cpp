@@ -30,6 +30,7 @@ double distanceTo(const Segment& segment, const Box& any) {
 }
 
 struct Counts {
+  int met = 0;    ///< boxes that segments certainly meet
   int apart = 0;  ///< segments that are nearest to a box at some distance
   int ones = 0;   ///< segments for which floats say to which box
   std::size_t offered = 0;
@@ -50,6 +51,7 @@ void checkNearest(const kernels::Kernels& kernels, const std::vector<Box>& boxes
     double bound;
     std::set<std::size_t> offered;
     std::size_t close;  ///< of these, those whose bounds tell something
+    int met = 0;        ///< those that are certainly met
   };
   const auto offer = [](void* context, std::uint32_t box, const kernels::NearBox& near) {
     auto& search = *static_cast<Search*>(context);
@@ -57,6 +59,7 @@ void checkNearest(const kernels::Kernels& kernels, const std::vector<Box>& boxes
     const double distance = distanceTo(search.segment, search.boxes[box]);
     EXPECT_LE(near.lower, distance);
     EXPECT_GE(near.upper, distance);
+    search.met += near.upper == 0.0 ? 1 : 0;
     search.close += near.upper - near.lower <= 1e-9 * near.scale ? 1U : 0U;
     if (search.shrinks) {
       search.bound = std::min(search.bound, distance);
@@ -108,6 +111,7 @@ void checkNearest(const kernels::Kernels& kernels, const std::vector<Box>& boxes
   counts.apart += least > 0.0 ? 1 : 0;
   counts.offered += shrinking.offered.size();
   counts.close += shrinking.close;
+  counts.met += shrinking.met;
 }
 
 TEST_P(NearestKernelTest, OfferTheNearestInHostileScenes) {
@@ -123,6 +127,7 @@ TEST_P(NearestKernelTest, OfferTheNearestInHostileScenes) {
     }
   }
   EXPECT_GT(counts.apart, asked / 10);
+  EXPECT_GT(counts.met, 50);
   EXPECT_GT(counts.ones, GetParam()->nearest_one != nullptr ? asked / 20 : -1);
   EXPECT_GT(10 * counts.close, 9 * counts.offered);
 }

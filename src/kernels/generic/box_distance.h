@@ -83,7 +83,9 @@ static inline void estimate(const BoxRecord& box, const SegmentQuery& query, Nea
   const double least = at_start < at_end ? at_start : at_end;
   const double error = exact::bounds::kDistance * near.scale;
   near.lower = length > 0.0 ? least / length - error : 0.0;
-  near.upper = length + error;
+  const Double4 x = all4(near.t) * s.direction;
+  const bool is_met = notBelow3(smaller(x - s.below, s.above - x), all4(error)) == 7U;
+  near.upper = is_met ? 0.0 : length + error;
   if (!(near.scale >= exact::bounds::kSmallestScale &&
         near.scale <= exact::bounds::kLargestScale)) {
     near.lower = 0.0;
