@@ -82,14 +82,14 @@ struct SceneView {
   /// Level 0 is the lowest. All nodes of the last one are roots.
   Level levels[kMaxLevels + 1];
   int depth;  ///< how many levels there are; 0: no box is in the tree
-  /// The same for many segments: of a list of several nodes there is one more, around its nodes.
+  /// The same for many segments: where there are several roots there is one more, around them.
   int depth_together;
   /// Of a list that is so short that its boxes are compared at once: slot i % kSlots of block
   /// i / kSlots is record i. None in blocks: it is not.
   const BoxBlock* blocks;
   std::uint32_t boxes_in_blocks;
   Density density;
-  /// Of a list of several nodes: slot n is around all of node n.
+  /// Slot n is around all of root n.
   const Bounds* around_nodes;
   const LeafBoxes* leaves;  ///< of each node of the lowest level
   const BoxRecord* records;
@@ -204,7 +204,8 @@ struct SegmentQuery {
 };
 
 /// A box that may be within the bound: SegmentSlabs, NearestGuess and DistanceBounds of
-/// geometry/distance_filter.h, with a fourth lane of whatever.
+/// geometry/distance_filter.h, with a fourth lane of whatever; of one that is certainly met the
+/// upper bound is 0.
 struct alignas(32) NearBox {
   double below[4];
   double above[4];

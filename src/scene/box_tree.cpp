@@ -77,12 +77,6 @@ BoxTree::BoxTree(const SceneBoxes& boxes) {
   if (records_.size() <= kernels::kMostInBlocks[static_cast<int>(density_)]) {
     blocks_ = blocksOf(records_, center_);
   }
-  if (levels_.size() == 1) {
-    around_nodes_ = emptyBounds();
-    for (std::size_t node = 0; node < levels_.front().size(); ++node) {
-      setSlot(around_nodes_, node, aroundSlots(levels_.front().bounds[node]));
-    }
-  }
 }
 
 void BoxTree::addRecords(const SceneBoxes& boxes, const std::vector<Item>& items) {
@@ -124,8 +118,11 @@ void BoxTree::addLeaves() {
 /// Finds out what depends on all bounds together.
 void BoxTree::measure() {
   FloatBounds around;
-  for (const kernels::Bounds& bounds : levels_.back().bounds) {
-    around.add(aroundSlots(bounds));
+  around_nodes_ = emptyBounds();
+  for (std::size_t node = 0; node < levels_.back().size(); ++node) {
+    const FloatBounds slots = aroundSlots(levels_.back().bounds[node]);
+    setSlot(around_nodes_, node, slots);
+    around.add(slots);
   }
   double area = 0.0;
   for (const kernels::Bounds& bounds : levels_.front().bounds) {
@@ -167,9 +164,9 @@ kernels::SceneView BoxTree::view() const {
   constexpr std::uint32_t kNodes = 2;  // as soon compared as what is around them
   static constexpr std::uint32_t kFirst[] = {0};
   view.depth_together = view.depth;
-  if (view.depth == 1 && view.levels[0].nodes > kNodes) {
-    view.levels[1] = {&around_nodes_, kFirst, 1};
-    view.depth_together = 2;
+  if (view.depth > 0 && view.levels[view.depth - 1].nodes > kNodes) {
+    view.levels[view.depth] = {&around_nodes_, kFirst, 1};
+    view.depth_together = view.depth + 1;
   }
   view.blocks = blocks_.data();
   view.boxes_in_blocks = static_cast<std::uint32_t>(blocks_.empty() ? 0 : records_.size());

@@ -61,7 +61,7 @@ class BoxTree {
 
   std::vector<TreeNodes> levels_;
   std::vector<kernels::BoxBlock> blocks_;
-  kernels::Bounds around_nodes_;            ///< of a list
+  kernels::Bounds around_nodes_;            ///< of the roots
   std::vector<kernels::LeafBoxes> leaves_;  ///< of the nodes of the lowest level
   std::vector<kernels::BoxRecord> records_;
   std::vector<kernels::AxisRests> rests_;  ///< of each record, where kernels use them

@@ -38,9 +38,9 @@ void TreeBuilder::build() {
   levels_.resize(top + 1);
   const std::size_t least = all.size() / TreePartition::target(top - 1) + 1;
   const std::size_t roots = (std::min(least + least / 4, kMostRoots) + kSlots - 1) / kSlots;
-  std::vector<ItemRange> slots;
-  partition_.cut(all, roots * kSlots, top - 1, slots);
-  buildBelow(top, std::move(slots), 0);
+  std::vector<ItemRange> ranges;
+  partition_.cut(all, roots, top, ranges);
+  buildBelow(top, std::move(ranges), 0);
 }
 
 bool TreeBuilder::append(std::size_t records) {
@@ -49,17 +49,14 @@ bool TreeBuilder::append(std::size_t records) {
   if (all.size() > kSlots * TreePartition::target(top - 1)) {
     return false;
   }
-  std::vector<ItemRange> slots;
-  partition_.cut(all, kSlots, top - 1, slots);
-  buildBelow(top, std::move(slots), records);
+  buildBelow(top, {all}, records);
   return true;
 }
 
-void TreeBuilder::buildBelow(std::size_t top, std::vector<ItemRange> slots, std::size_t records) {
-  // The nodes of a level as ranges of items.
-  std::vector<ItemRange> ranges;
-  emit(top, slots, levels_[top - 1].size(), ranges);
-  for (std::size_t level = top - 1; level > 0; --level) {
+/// @param ranges a root each
+void TreeBuilder::buildBelow(std::size_t top, std::vector<ItemRange> ranges, std::size_t records) {
+  std::vector<ItemRange> slots;
+  for (std::size_t level = top; level > 0; --level) {
     const std::size_t below = levels_[level - 1].size();
     std::vector<ItemRange> next;
     for (const ItemRange& range : ranges) {
@@ -72,17 +69,14 @@ void TreeBuilder::buildBelow(std::size_t top, std::vector<ItemRange> slots, std:
   emitLeaves(ranges, records);
 }
 
-/// Appends nodes with the given ranges as children, one or as many roots as it takes, which come
-/// behind `below` others.
+/// Appends a node with the given ranges as children, which come behind `below` others.
 void TreeBuilder::emit(std::size_t level, const std::vector<ItemRange>& slots, std::size_t below,
                        std::vector<ItemRange>& ranges) {
   TreeNodes& nodes = levels_[level];
+  nodes.first.push_back(static_cast<std::uint32_t>(below + ranges.size()));
+  nodes.bounds.push_back(emptyBounds());
   for (std::size_t k = 0; k < slots.size(); ++k) {
-    if (k % kSlots == 0) {
-      nodes.first.push_back(static_cast<std::uint32_t>(below + ranges.size()));
-      nodes.bounds.push_back(emptyBounds());
-    }
-    setSlot(nodes.bounds.back(), k % kSlots, partition_.boundsOf(slots[k]));
+    setSlot(nodes.bounds.back(), k, partition_.boundsOf(slots[k]));
     ranges.push_back(slots[k]);
   }
 }

@@ -28,7 +28,7 @@ class TreeBuilder {
   const std::vector<Item>& items() const { return partition_.items(); }
 
  private:
-  void buildBelow(std::size_t top, std::vector<ItemRange> slots, std::size_t records);
+  void buildBelow(std::size_t top, std::vector<ItemRange> ranges, std::size_t records);
   void emit(std::size_t level, const std::vector<ItemRange>& slots, std::size_t below,
             std::vector<ItemRange>& ranges);
   void emitLeaves(const std::vector<ItemRange>& ranges, std::size_t records);

@@ -189,6 +189,26 @@ TEST(SkippedWork, WhereFloatSaysWhichBoxIsNearestDoubleIsNotAsked) {
   }
 }
 
+TEST(SkippedWork, OfSegmentsTogetherOnlyNearRootsAreCompared) {
+  const Scene scene(turnedBoxes(1000));
+  std::vector<Segment> segments;
+  for (const Ray& ray : raysAmong(scene.size())) {
+    segments.push_back({ray.origin, ray.origin + ray.direction});
+  }
+  std::vector<Clearance> clearances(segments.size());
+  const QueryCounters one_by_one = workOf([&] {
+    for (const Segment& segment : segments) {
+      scene.clearance(segment);
+    }
+  });
+  const QueryCounters together =
+      workOf([&] { scene.clearance(segments.data(), segments.size(), clearances.data()); });
+  // One by one they are all compared, at once: some five.
+  if (activeKernels() != std::string("portable")) {
+    EXPECT_LT(together.nodes, one_by_one.nodes - one_by_one.nodes / 8);
+  }
+}
+
 TEST(SkippedWork, WhatDoubleDecidesIsNotDecidedExactly) {
   const Scene scene(turnedBoxes(2000));
   std::size_t hits = 0;

@@ -78,7 +78,8 @@ class NearestOneSearch {
       : view_(view), segment_(segment), lanes_(segment), work_(work) {}
 
   NearestList& run() {
-    const int top = view_.depth_together - 1;
+    // Roots of a tree are compared at once: their bounds would have to be waited for.
+    const int top = (view_.depth > 1 ? view_.depth : view_.depth_together) - 1;
     const std::uint32_t roots = view_.levels[top].nodes;
     if (top == 0) {
       for (std::uint32_t root = 0; root < roots; ++root) {

@@ -183,11 +183,12 @@ class NearestTogether {
     }
     for (int i = 0; i < count; ++i) {
       if (i + 1 < count) {
-        fetch(1, children[i + 1] & kLargestNumber);
+        fetchNode(view_.levels[0].bounds[children[i + 1] & kLargestNumber]);
       }
       NearCompanion& c = segments_[children[i] >> kNumberBits];
-      if (nears[i] <= c.list.bound()) {
-        visit(c, children[i] & kLargestNumber);
+      const std::uint32_t leaf = children[i] & kLargestNumber;
+      if (nears[i] <= c.list.bound() && mayBeNearer(c, leaf)) {
+        visit(c, leaf);
       }
     }
   }
@@ -218,6 +219,13 @@ class NearestTogether {
     if (listed > 0) {
       goOn(level, list, nears_below, listed);
     }
+  }
+
+  /// Whether the bounds of boxes of a leaf, which are less to read than the boxes, are near enough.
+  bool mayBeNearer(const NearCompanion& c, std::uint32_t leaf) {
+    ++work_.nodes;
+    const Float16 lower = LaneSegment<0>(c.segment).distances(view_.levels[0].bounds[leaf]);
+    return notAbove(lower, all16(c.list.bound())) != 0;
   }
 
   void visit(NearCompanion& c, std::uint32_t leaf) {
