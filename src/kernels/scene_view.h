@@ -89,6 +89,8 @@ struct SceneView {
   const BoxBlock* blocks;
   std::uint32_t boxes_in_blocks;
   Density density;
+  /// Of a tree of two levels: most rays meet no leaf, even if they go through all of the scene.
+  bool meets_few_leaves;
   /// Slot n is around all of root n.
   const Bounds* around_nodes;
   const LeafBoxes* leaves;  ///< of each node of the lowest level

@@ -188,6 +188,8 @@ kernels::SceneView BoxTree::view() const {
   view.apart = static_cast<float>((reach * bounds::kApart + bounds::kFloatUnderflow) *
                                   (bounds::kUp * bounds::kUp));
   view.density = density_;
+  constexpr double kFew = 1.8;  // measured
+  view.meets_few_leaves = levels_.size() == 2 && cost_ < kFew;
   view.has_aligned = has_aligned_;
   view.mean_free_path = mean_free_path_;
   return view;

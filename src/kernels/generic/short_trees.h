@@ -222,6 +222,10 @@ static void visitTwoLevels(const SceneView& view, FloatRay& ray, Visit& visit) {
   alignas(64) float nears[kMostRootNodes * kSlots];
   std::uint64_t later[kRootWords] = {0, 0};
   meetsNodes(top.bounds, roots, RayLanes(ray), nears, later);
+  // (Where that can be foretold, or else the branch would cost more than it spares.)
+  if (view.meets_few_leaves && (later[0] | later[1]) == 0) {
+    return;
+  }
   float length = ray.stretch_s;
   if (!(ray.begin_s + length < ray.end_s)) {
     visitLeaves(view, later, ray, visit);
