@@ -152,14 +152,16 @@ using Take = double (*)(void* context, const Found& found);
 struct Found {
   static constexpr int kCapacity = 64;
 
-  // (Without an initializer for the candidates: most queries need few of them.)
+  // (Without an initializer for the candidates: most queries need few of them, or none.)
   Found(Work* what_was_done, Take more, void* its_context)
       : count(0), work(what_was_done), take(more), context(its_context) {}
+  explicit Found(Work* what_was_done) : count(0), work(what_was_done), take(nullptr) {}
   Found() : Found(nullptr, nullptr, nullptr) {}
 
   int count;
   Work* work;  ///< is added to
-  Take take;   ///< for more candidates than there is room for
+  /// For more candidates than there is room for; null: then the query is not taken.
+  Take take;
   void* context;
   /// A box that is certainly entered before this parameter is certainly in range; of none is it
   /// known where the ray came near no box.

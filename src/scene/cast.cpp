@@ -133,20 +133,12 @@ template <typename Answer>
                                                               const BoxMask* mask,
                                                               Answer&& answer) const
     -> decltype(answer(nullptr)) {
-  bool too_many = false;
-  kernels::Found found(
-      &work_of_thread,
-      [](void* context, const kernels::Found&) {
-        *static_cast<bool*>(context) = true;
-        return -kInf;
-      },
-      &too_many);
+  kernels::Found found(&work_of_thread);
   const kernels::Answer found_out = kernels.closest(view, rayQuery(ray, max_range, mask), found);
   if (found_out == kernels::Answer::kNone && tree.left_out().empty()) {
     return {};
   }
-  const bool is_all = found_out != kernels::Answer::kNotTaken && !too_many;
-  return answer(is_all ? &found : nullptr);
+  return answer(found_out != kernels::Answer::kNotTaken ? &found : nullptr);
 }
 
 Hit Scene::cast(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
@@ -163,15 +155,7 @@ ClosestBox Scene::castClosest(const Ray& ray, double max_range,
 }
 
 bool Scene::castAny(const Ray& ray, double max_range, const BoxMask* mask) const noexcept {
-  return impl_->meetsAny(ray, max_range, mask, [&](std::size_t i) {
-    Solution solution = solveBox(ray, doubleComponent(ray), impl_->boxes.simplest(i));
-    return solution.num_points > 0 &&
-           std::visit(
-               [&](const auto& box) {
-                 return isEnteredWithin(ray, box, solution, max_range, directionLength(ray));
-               },
-               impl_->boxes.simplest(i));
-  });
+  return impl_->meetsAny(ray, max_range, mask);
 }
 
 }  // namespace box_query

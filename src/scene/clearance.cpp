@@ -78,15 +78,20 @@ ParameterBounds firstWithinBounds(const NearestEstimate& estimate, double radius
 
 bool Scene::isClear(const Segment& segment, double radius, const BoxMask* mask) const noexcept {
   if (radius == 0.0 && segment.start != segment.end) {
-    return !impl_->meetsAny(segment, std::numeric_limits<double>::infinity(), mask,
-                            [&](std::size_t i) { return meet(segment, impl_->boxes.simplest(i)); });
+    return !impl_->meetsAny(segment, std::numeric_limits<double>::infinity(), mask);
   }
+  return impl_->areFartherThan(segment, radius, mask);
+}
+
+/// (Not inlined, so that a segment that meets nothing needs no room for it.)
+[[gnu::noinline]] bool Scene::Impl::areFartherThan(const Segment& segment, double radius,
+                                                   const BoxMask* mask) const {
   bool clear = true;
-  impl_->forEachNear(segment, radius, false, mask,
-                     [&](std::size_t i, const DistanceBounds& bounds, const auto&) {
-                       clear = isFartherThan(segment, impl_->boxes.simplest(i), bounds, radius);
-                       return clear ? radius : -1.0;
-                     });
+  forEachNear(segment, radius, false, mask,
+              [&](std::size_t i, const DistanceBounds& bounds, const auto&) {
+                clear = isFartherThan(segment, boxes.simplest(i), bounds, radius);
+                return clear ? radius : -1.0;
+              });
   return clear;
 }
 

@@ -13,8 +13,6 @@ namespace box_query {
 
 template <typename T>
 class FirstEntered;
-template <typename Decide>
-struct Undecided;
 struct NearestOffered;
 
 struct Scene::Impl {
@@ -53,13 +51,15 @@ struct Scene::Impl {
   void offerOthers(FirstEntered<T>& first, bool taken, double max_range, const BoxMask* mask) const;
 
   /// Whether any box is met, entered at a range of at most `max_range` metres.
-  /// @param decide decide(index) says so exactly, where doubles cannot
-  template <typename T, typename Decide>
-  bool meetsAny(const T& linear, double max_range, const BoxMask* mask, Decide&& decide) const;
+  template <typename T>
+  bool meetsAny(const T& linear, double max_range, const BoxMask* mask) const;
   /// The same behind the kernel.
-  template <typename T, typename Decide>
+  template <typename T>
   bool decideAny(const T& linear, double max_range, const BoxMask* mask, kernels::Answer answer,
-                 kernels::Found& found, Undecided<Decide>& undecided) const;
+                 const kernels::Found& found) const;
+
+  /// Whether all boxes are farther from a segment than a radius.
+  bool areFartherThan(const Segment& segment, double radius, const BoxMask* mask) const;
 
   /// Calls visit(index, bounds, estimate) for all boxes that may be within `bound` of the segment:
   /// with DistanceBounds, and estimate() for the NearestEstimate. It returns the bound from then

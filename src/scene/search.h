@@ -4,6 +4,7 @@
 #pragma once
 
 #include "geometry/distance_query.h"
+#include "geometry/solve.h"
 #include "scene/candidates.h"
 #include "scene/counters.h"
 #include "scene/first_entered.h"
@@ -14,6 +15,7 @@
 #include <limits>
 #include <optional>
 #include <type_traits>
+#include <variant>
 
 namespace box_query {
 
@@ -77,11 +79,29 @@ void Scene::Impl::findFirst(FirstEntered<T>& first, double max_range, const BoxM
   offerOthers(first, taken, max_range, mask);
 }
 
+/// Whether a box is met, entered at a range of at most `max_range` metres: exactly.
+inline bool isMet(const Ray& ray, const Box& any, double max_range) {
+  Solution solution = solveBox(ray, doubleComponent(ray), any);
+  return solution.num_points > 0 &&
+         std::visit(
+             [&](const auto& box) {
+               return isEnteredWithin(ray, box, solution, max_range, directionLength(ray));
+             },
+             any);
+}
+inline bool isMet(const Segment& segment, const Box& any, double /*max_range*/) {
+  return meet(segment, any);
+}
+
 /// Candidates of a search for any box.
-template <typename Decide>
+template <typename T>
 struct Undecided {
-  Decide& decide;
+  const SceneBoxes& boxes;
+  const T& linear;
+  double max_range;
   bool met = false;
+
+  bool decide(std::size_t box) const { return isMet(linear, boxes.simplest(box), max_range); }
 
   /// For kernels::Found.
   static double take(void* context, const kernels::Found& found) {
@@ -93,32 +113,37 @@ struct Undecided {
   }
 };
 
-template <typename T, typename Decide>
+template <typename T>
 [[gnu::always_inline]] inline bool Scene::Impl::meetsAny(const T& linear, double max_range,
-                                                         const BoxMask* mask,
-                                                         Decide&& decide) const {
-  Undecided<Decide> undecided{decide};
-  kernels::Found found(&work_of_thread, undecided.take, &undecided);
+                                                         const BoxMask* mask) const {
+  kernels::Found found(&work_of_thread);
   const kernels::Answer answer = kernels.any(view, rayQuery(linear, max_range, mask), found);
   // As a rule the kernel has decided everything.
   return answer == kernels::Answer::kYes ||
          (!(answer == kernels::Answer::kNone && tree.left_out().empty()) &&
-          decideAny(linear, max_range, mask, answer, found, undecided));
+          decideAny(linear, max_range, mask, answer, found));
 }
 
-template <typename T, typename Decide>
+template <typename T>
 [[gnu::noinline]] bool Scene::Impl::decideAny(const T& linear, double max_range,
                                               const BoxMask* mask, kernels::Answer answer,
-                                              kernels::Found& found,
-                                              Undecided<Decide>& undecided) const {
-  if constexpr (std::is_same_v<T, Ray>) {
-    if (answer == kernels::Answer::kNotTaken) {
-      if (const auto scaled = withDirectionNearOne(linear)) {
-        answer = kernels.any(view, rayQuery(*scaled, max_range, mask), found);
+                                              const kernels::Found& found_first) const {
+  Undecided<T> undecided{boxes, linear, max_range};
+  if (answer != kernels::Answer::kNotTaken) {
+    undecided.take(&undecided, found_first);
+  } else {
+    kernels::Found found(&work_of_thread, undecided.take, &undecided);
+    answer = kernels.any(view, rayQuery(linear, max_range, mask), found);
+    if constexpr (std::is_same_v<T, Ray>) {
+      if (answer == kernels::Answer::kNotTaken) {
+        if (const auto scaled = withDirectionNearOne(linear)) {
+          answer = kernels.any(view, rayQuery(*scaled, max_range, mask), found);
+        }
       }
     }
+    undecided.take(&undecided, found);
   }
-  if (answer == kernels::Answer::kYes || undecided.met || undecided.take(&undecided, found) < 0.0) {
+  if (answer == kernels::Answer::kYes || undecided.met) {
     return true;
   }
   const bool taken = answer != kernels::Answer::kNotTaken;

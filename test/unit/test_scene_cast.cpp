@@ -181,6 +181,25 @@ TEST(SceneCast, MaxRangeHoldsBeyondAllFloats) {
   }
 }
 
+TEST(SceneCast, MoreDoubtfulBoxesThanAKernelKeepsAreDecided) {
+  const auto scene = [](double below) {
+    std::vector<Box> row;  // of corners on the ray, or right beside it
+    for (int i = 1; i <= 300; ++i) {
+      const double c = 0.125 * i;
+      row.emplace_back(AlignedBox{{c, c - 1.0, -1.0}, {c + 1.0, c * below, 1.0}});
+    }
+    return Scene(row);
+  };
+  const Ray diagonal{{0, 0, 0}, {1, 1, 0}};
+  const Segment part{{0, 0, 0}, {50, 50, 0}};
+  EXPECT_TRUE(scene(1.0).castAny(diagonal));
+  EXPECT_FALSE(scene(1.0).isClear(part, 0.0));
+  EXPECT_EQ(scene(1.0).castClosest(diagonal).box, 0U);
+  EXPECT_FALSE(scene(1.0 - 0x1p-53).castAny(diagonal));
+  EXPECT_TRUE(scene(1.0 - 0x1p-53).isClear(part, 0.0));
+  EXPECT_FALSE(scene(1.0 - 0x1p-53).castClosest(diagonal).hit);
+}
+
 TEST(SceneCast, ANormalIsThatOfTheLowestAxis) {
   EXPECT_EQ(Scene({cubeAt(5, 5, 5)}).cast(Ray{{0, 0, 0}, {1, 1, 1}}).normal, Vector3(-1, 0, 0));
   EXPECT_EQ(Scene({cubeAt(0, 5, 5)}).cast(Ray{{0, 0, 0}, {0, 1, 1}}).normal, Vector3(0, -1, 0));

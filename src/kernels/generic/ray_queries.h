@@ -49,16 +49,25 @@ class RayVisit {
   /// Adds a candidate to those that the caller decides.
   /// @return false if the caller ends the query
   bool leaveToCaller(const Candidate& candidate) {
-    if (isFull()) {
-      const bool ends = found->take(found->context, *found) < 0.0;
-      found->count = 0;
-      is_left_ = true;
-      if (ends) {
-        return false;
-      }
+    if (isFull() && takeAll() < 0.0) {
+      return false;
     }
     add(candidate);
     return true;
+  }
+
+  /// Makes room for candidates.
+  /// @return what Take returned, or -inf
+  double takeAll() {
+    double known = -kInfinity;
+    if (found->take != nullptr) {
+      known = found->take(found->context, *found);
+      is_left_ = true;
+    } else {
+      is_taken_ = false;
+    }
+    found->count = 0;
+    return known;
   }
 
   Answer answerOfFound() const {
@@ -161,9 +170,7 @@ class ClosestVisit : public RayVisit {
   void makeRoom() {
     dropLater();
     if (found->count > Found::kCapacity / 2) {
-      const double known = found->take(found->context, *found);
-      found->count = 0;
-      is_left_ = true;
+      const double known = takeAll();
       earliest_ = kInfinity;
       if (known < bound_) {
         shorten(known);

@@ -170,7 +170,7 @@ class LaneSearch {
 
   void deliver(int ray) {
     Companion<Visit>& c = rays_[ray];
-    to_.take(c.number, c.visit.answer(), c.gave_up, c.found);
+    to_.take(c.number, c.visit.answer(), c.found);
   }
 
   void askEachAlone(std::uint32_t rays) {

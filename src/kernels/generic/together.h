@@ -21,7 +21,6 @@ struct Companion {
   Visit visit;
   RayQuery query;
   std::size_t number;  ///< of the query
-  bool gave_up;        ///< more candidates than there is room for
   float begin;
   float length;
 
@@ -103,12 +102,6 @@ struct Company {
   }
 };
 
-/// Takes no candidates, and so ends a search that has more of them than there is room for.
-static double giveUp(void* gave_up, const Found& /*found*/) {
-  *static_cast<bool*>(gave_up) = true;
-  return -std::numeric_limits<double>::infinity();
-}
-
 /// What is asked of each ray.
 template <typename HowToVisit, bool kOfSegments>
 struct Ask {
@@ -127,16 +120,14 @@ struct Delivery {
              Companion<Visit>& c) const {
     c.number = number;
     c.query = query;
-    c.gave_up = false;
     c.found.count = 0;
     c.found.work = &work;
-    c.found.take = giveUp;
-    c.found.context = &c.gave_up;
+    c.found.take = nullptr;
     c.visit = Visit(view, c.query, c.found, c.in_float);
   }
 
-  void take(std::size_t number, Answer answer, bool gave_up, const Found& found) const {
-    if (answer == Answer::kNotTaken || gave_up) {
+  void take(std::size_t number, Answer answer, const Found& found) const {
+    if (answer == Answer::kNotTaken) {
       deliver(context, number, Answer::kNotTaken, nullptr);
     } else if (answer != Answer::kNone) {
       deliver(context, number, answer, &found);
@@ -147,11 +138,10 @@ struct Delivery {
 template <typename What>
 static void askAlone(const SceneView& view, const RayQueries& queries, std::size_t number,
                      const Delivery& to) {
-  bool gave_up = false;
-  Found found(&to.work, giveUp, &gave_up);
+  Found found(&to.work);
   const RayQuery query = queries.query(number, What::kAreSegments);
   const Answer answer = search<typename What::Visit>(view, query, found);
-  to.take(number, answer, gave_up, found);
+  to.take(number, answer, found);
 }
 
 /// The rest of a ray.
@@ -188,7 +178,7 @@ static void searchRests(const SceneView& view, const RayQueries& queries, const 
           c.length = c.in_float.stretch_s * (rest.begin > 0.0F ? 2.0F : 1.0F);
           under_way |= 1U << i;
         } else if (outcome != Outcome::kMiss) {
-          to.take(rest.number, Answer::kNotTaken, false, c.found);
+          to.take(rest.number, Answer::kNotTaken, c.found);
         }
       }
       if ((under_way & (1U << i)) != 0) {
@@ -211,7 +201,7 @@ static void searchRests(const SceneView& view, const RayQueries& queries, const 
         c.length *= 2.0F;
       } else {
         under_way &= ~(1U << i);
-        to.take(c.number, c.visit.answer(), c.gave_up, c.found);
+        to.take(c.number, c.visit.answer(), c.found);
       }
     }
   }
