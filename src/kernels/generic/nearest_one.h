@@ -9,12 +9,13 @@ class NearestList {
   NearestList() { clear(); }
 
   void clear() {
-    bound_ = std::numeric_limits<float>::max();
+    bound_ = kNoBound;
     lower_ = 0.0F;
     is_full_ = false;
     count_ = 0;
   }
   float bound() const { return bound_; }
+  bool isBounded() const { return bound_ < kNoBound; }
 
   void add(const SceneView& view, const FloatSegment& segment, std::uint32_t node) {
     const LeafDistances distances = leafDistances(view.leaves[node], segment);
@@ -60,6 +61,7 @@ class NearestList {
 
  private:
   static constexpr int kCapacity = 64;
+  static constexpr float kNoBound = std::numeric_limits<float>::max();
 
   float bound_;
   float lower_;  ///< of the one of the least upper bound, and more of it
@@ -106,9 +108,16 @@ class NearestOneSearch {
   void goTo(int level, std::uint32_t child) {
     if (level > 1) {
       searchNode(level - 1, child);
-    } else {
+    } else if (isNear(child)) {
       visit(child);
     }
+  }
+
+  /// Whether some box of a leaf may be as near as what was found: its bounds are less to read, and
+  /// to compare, than itself. (Of a long segment they say too little.)
+  bool isNear(std::uint32_t leaf) {
+    return kSteps > 0 || !list_.isBounded() ||
+           notAbove(lowerBounds(0, leaf), all16(list_.bound())) != 0;
   }
 
   void searchNode(int level, std::uint32_t node) {
@@ -198,17 +207,9 @@ static bool nearestOneAfterSteps(const SceneView& view, const SegmentQuery& quer
   return decide(view, query, search.run(), approach, context, one, work);
 }
 
-/// Leaves of so many boxes are not in cache: all of one takes longer to come from memory than the
-/// bounds of its boxes, and the record of one or two.
-constexpr std::uint32_t kInCache = 32768;
-
 static bool nearestOne(const SceneView& view, const SegmentQuery& query, Approach approach,
                        void* context, NearestOne* one, Work& work) {
   if (view.depth == 0) {
-    return false;
-  }
-  if (view.num_records > kInCache) {
-    nearest(view, query, approach, context, work);
     return false;
   }
   const FloatSegment segment(view, query);
