@@ -16,16 +16,23 @@
 struct FloatSegment {
   float origin[3];
   float direction[3];
+  float middle[3];
+  float half[3];  ///< of the direction
   float slack;
   float squared_length;
   float minus_inverse;
 
   FloatSegment() = default;
-  FloatSegment(const SceneView& view, const SegmentQuery& query) : squared_length(0.0F) {
+  FloatSegment(const SceneView& view, const SegmentQuery& query) { set(view, query); }
+
+  void set(const SceneView& view, const SegmentQuery& query) {
+    squared_length = 0.0F;
     float size = 0.0F;
     for (int i = 0; i < 3; ++i) {
       origin[i] = static_cast<float>(query.start[i] - view.center[i]);
       direction[i] = static_cast<float>(query.end[i] - query.start[i]);
+      half[i] = 0.5F * direction[i];
+      middle[i] = origin[i] + half[i];
       squared_length += direction[i] * direction[i];
       size += std::fabs(origin[i]) + std::fabs(direction[i]);
     }
@@ -101,8 +108,8 @@ class LaneSegment<0> {
  public:
   explicit LaneSegment(const FloatSegment& s) : slack_(all16(s.slack)) {
     for (int i = 0; i < 3; ++i) {
-      middle_[i] = all16(s.origin[i] + 0.5F * s.direction[i]);
-      half_[i] = all16(0.5F * s.direction[i]);
+      middle_[i] = all16(s.middle[i]);
+      half_[i] = all16(s.half[i]);
     }
   }
 

@@ -46,11 +46,13 @@ class NearestTogether {
         work_(work) {}
 
   bool isFull() const { return count_ == kSegmentsTogether; }
-  void add(std::size_t number, const SegmentQuery& query, const FloatSegment& segment) {
+  /// The next segment, to be set where it is: a copy of what has just been written would be waited
+  /// for.
+  FloatSegment& next() { return segments_[count_].segment; }
+  void add(std::size_t number, const SegmentQuery& query) {
     NearCompanion& c = segments_[count_++];
     c.query = &query;
     c.number = number;
-    c.segment = segment;
     c.list.clear();
   }
 
@@ -258,9 +260,9 @@ static void nearestTogether(const SceneView& view, const SegmentQuery* queries, 
   const bool is_short_enough = view.levels[0].nodes <= kLargestNumber / kSlots;
   NearestTogether together(view, approach, context, ones, work);
   for (std::size_t i = 0; i < count; ++i) {
-    const FloatSegment segment(view, queries[i]);
-    if (is_short_enough && queries[i].mask == nullptr && isShort(view, segment)) {
-      together.add(i, queries[i], segment);
+    together.next().set(view, queries[i]);
+    if (is_short_enough && queries[i].mask == nullptr && isShort(view, together.next())) {
+      together.add(i, queries[i]);
       if (together.isFull()) {
         together.run();
       }
