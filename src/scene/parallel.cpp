@@ -4,17 +4,28 @@
 #include "scene/parallel.h"
 
 #include <algorithm>
+#include <map>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 namespace box_query {
+namespace {
+
+/// The arena of this thread for so many threads. It stays: until others have come to a new one, a
+/// thousand rays are done. (One of its own, or else threads that call at once would wait for room;
+/// and for each number, since a call may be made from within another.)
+tbb::task_arena& arenaOf(std::size_t threads) {
+  thread_local std::map<std::size_t, tbb::task_arena> arenas;
+  return arenas.try_emplace(threads, static_cast<int>(threads)).first->second;
+}
+
+}  // namespace
 
 void runInParallel(std::size_t count, std::size_t threads, ParallelWork& work) {
   using Range = tbb::blocked_range<std::size_t>;
-  tbb::task_arena arena(static_cast<int>(threads));
-  arena.execute([&] {
+  arenaOf(threads).execute([&] {
     tbb::parallel_for(Range(0, count),
                       [&work](const Range& range) { work.run(range.begin(), range.end()); });
   });

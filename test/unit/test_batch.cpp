@@ -172,6 +172,34 @@ TEST(Batch, UsesNoMoreThreadsThanItMay) {
   EXPECT_LE(threadsOf(100000, 2).size(), 2U);
 }
 
+TEST(Batch, IsAskedFromWithinOthersAndFromManyThreads) {
+  std::atomic<std::size_t> asked{0};
+  const auto count_inner = [&asked](std::size_t begin, std::size_t end) {
+    for (const int threads : {2, 3, 1}) {
+      forEachPart(1000, threads, [&](std::size_t from, std::size_t to) { asked += to - from; });
+    }
+    EXPECT_LT(begin, end);
+  };
+  std::vector<std::thread> callers;
+  for (int caller = 0; caller < 4; ++caller) {
+    callers.emplace_back([&] {
+      for (const int threads : {2, 3, 2}) {
+        std::atomic<std::size_t> done{0};
+        forEachPart(1000, threads, [&](std::size_t begin, std::size_t end) {
+          count_inner(begin, end);
+          done += end - begin;
+        });
+        EXPECT_EQ(done, 1000U);
+      }
+    });
+  }
+  for (std::thread& caller : callers) {
+    caller.join();
+  }
+  EXPECT_EQ(asked % 3000, 0U);
+  EXPECT_GE(asked, 4U * 3U * 3000U);
+}
+
 TEST(Batch, OfNothingIsNothing) {
   EXPECT_TRUE(castEach(Scene(), {}).empty());
   const auto misses = castEach(Scene(), std::vector<Ray>(1000, Ray{{0, 0, 0}, {1, 0, 0}}));
