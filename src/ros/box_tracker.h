@@ -16,7 +16,6 @@
 #include <vector>
 
 #include <ros/time.h>
-#include <tf2/buffer_core.h>
 
 namespace box_query {
 

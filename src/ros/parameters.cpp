@@ -8,6 +8,7 @@
 
 #include <ros/console.h>
 #include <ros/names.h>
+#include <ros/node_handle.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
 namespace box_query {

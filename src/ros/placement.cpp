@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include <tf2/buffer_core.h>
 #include <tf2/exceptions.h>
 
 namespace box_query {

@@ -16,7 +16,10 @@
 
 #include <Eigen/Core>
 #include <ros/time.h>
-#include <tf2/buffer_core.h>
+
+namespace tf2 {
+class BufferCore;
+}
 
 namespace box_query {
 

@@ -13,6 +13,8 @@
 #include <variant>
 #include <vector>
 
+#include <tf2/buffer_core.h>
+
 namespace box_query::test {
 
 enum Operation : std::int8_t { kAdd, kRemove, kAppend, kMove };

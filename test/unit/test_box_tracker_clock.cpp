@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tf2/buffer_core.h>
 
 namespace box_query {
 namespace {

@@ -7,10 +7,11 @@
 #include <string>
 #include <vector>
 
-#include <ros/node_handle.h>
-
-namespace XmlRpc {
+namespace XmlRpc {  // NOLINT(readability-identifier-naming): not ours
 class XmlRpcValue;
+}
+namespace ros {
+class NodeHandle;
 }
 
 namespace box_query {

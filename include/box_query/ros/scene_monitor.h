@@ -16,8 +16,11 @@
 #include <vector>
 
 #include <geometry_msgs/TransformStamped.h>
-#include <ros/node_handle.h>
 #include <ros/time.h>
+
+namespace ros {
+class NodeHandle;
+}
 
 namespace box_query {
 
