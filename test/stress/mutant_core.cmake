@@ -54,7 +54,7 @@ foreach(file ${core_sources})
   list(APPEND mutant_sources ${mutant_dir}/${file})
 endforeach()
 add_library(${PROJECT_NAME}_mutant STATIC EXCLUDE_FROM_ALL ${mutant_sources})
-bq_configure(${PROJECT_NAME}_mutant)
+bq_configure_for_tests(${PROJECT_NAME}_mutant core)
 target_link_libraries(${PROJECT_NAME}_mutant ${TBB_LIBRARY})
 #catkin_lint: ignore_once missing_directory
 target_include_directories(${PROJECT_NAME}_mutant BEFORE PRIVATE ${mutant_dir}/src)
