@@ -7,6 +7,8 @@
 #include <cstring>
 #include <fstream>
 #include <iostream>
+#include <optional>
+#include <string>
 
 namespace {
 
@@ -24,10 +26,10 @@ segments with boxes, side by side in one run, their answers compared with the ex
   --slow-pairs N   random pairs over which those are counted that plain double could not decide (20000000)
 )";
 
-/// The value of option `name` at argv[i], or null.
-const char* valueOf(const char* name, int argc, char** argv, int& i) {
+/// The value of option `name` at argv[i], if that is there.
+std::optional<std::string> valueOf(const char* name, int argc, char** argv, int& i) {
   if (std::strcmp(argv[i], name) != 0 || i + 1 >= argc) {
-    return nullptr;
+    return std::nullopt;
   }
   return argv[++i];
 }
@@ -40,17 +42,17 @@ int main(int argc, char** argv) {
   bool bars = false;
   std::uint64_t slow_pairs = 20000000;
   for (int i = 1; i < argc; ++i) {
-    if (const char* sample = valueOf("--sample", argc, argv, i)) {
-      options.pair_sample = std::stoul(sample);
+    if (const auto sample = valueOf("--sample", argc, argv, i)) {
+      options.pair_sample = std::stoul(*sample);
       options.scene_sample = options.pair_sample / 20;
-    } else if (const char* rounds = valueOf("--rounds", argc, argv, i)) {
-      options.rounds = std::stoi(rounds);
-    } else if (const char* seed = valueOf("--seed", argc, argv, i)) {
-      options.seed = std::stoull(seed);
-    } else if (const char* file = valueOf("--csv", argc, argv, i)) {
-      csv = file;
-    } else if (const char* pairs = valueOf("--slow-pairs", argc, argv, i)) {
-      slow_pairs = std::stoull(pairs);
+    } else if (const auto rounds = valueOf("--rounds", argc, argv, i)) {
+      options.rounds = std::stoi(*rounds);
+    } else if (const auto seed = valueOf("--seed", argc, argv, i)) {
+      options.seed = std::stoull(*seed);
+    } else if (const auto file = valueOf("--csv", argc, argv, i)) {
+      csv = *file;
+    } else if (const auto pairs = valueOf("--slow-pairs", argc, argv, i)) {
+      slow_pairs = std::stoull(*pairs);
     } else if (std::strcmp(argv[i], "--bars") == 0) {
       bars = true;
     } else {

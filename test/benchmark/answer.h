@@ -28,7 +28,7 @@ struct Answer {
 };
 
 inline std::uint64_t bitsOf(double x) {
-  std::uint64_t bits;
+  std::uint64_t bits = 0;
   std::memcpy(&bits, &x, sizeof bits);
   return bits;
 }

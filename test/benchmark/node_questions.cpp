@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "benchmark/node_questions.h"
 
+#include "benchmark/answer.h"
 #include "benchmark/node_server.h"
 #include "benchmark/speed.h"
 #include "ros/conversions.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <memory>
 
 namespace box_query::benchmark {
@@ -30,7 +30,7 @@ BatchOptions optionsFor(int threads) {
 }
 
 bool same(double a, double b) {
-  return std::memcmp(&a, &b, sizeof a) == 0 || (std::isnan(a) && std::isnan(b));
+  return bitsOf(a) == bitsOf(b) || (std::isnan(a) && std::isnan(b));
 }
 template <class Message>
 bool same(const Message& a, const Vector3& b) {

@@ -75,9 +75,9 @@ class PlainNode {
     for (const visualization_msgs::Marker& marker : message->markers) {
       if (marker.action == visualization_msgs::Marker::ADD) {
         const geometry_msgs::Quaternion& q = marker.pose.orientation;
-        boxes.push_back(OrientedBox{fromMessage(marker.pose.position),
-                                    Quaternion(q.w, q.x, q.y, q.z),
-                                    0.5 * fromMessage(marker.scale)});
+        boxes.emplace_back(OrientedBox{fromMessage(marker.pose.position),
+                                       Quaternion(q.w, q.x, q.y, q.z),
+                                       0.5 * fromMessage(marker.scale)});
       }
     }
     auto known = std::make_shared<const Known>(

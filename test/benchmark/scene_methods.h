@@ -11,6 +11,7 @@
 #include <box_query/scene.h>
 
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace box_query::benchmark {
@@ -127,7 +128,7 @@ class ExactClosest {
 class DoubleDoubleClosest {
  public:
   static constexpr const char* kName = DoubleDoubleAlways::kName;
-  explicit DoubleDoubleClosest(const std::vector<OrientedBox>& boxes) : boxes_(boxes) {}
+  explicit DoubleDoubleClosest(std::vector<OrientedBox> boxes) : boxes_(std::move(boxes)) {}
   SceneAnswer operator()(const Ray& ray) const {
     const exact::Component component = exact::component(ray);
     SceneAnswer closest;

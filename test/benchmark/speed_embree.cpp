@@ -17,6 +17,9 @@ constexpr std::size_t kStream = 256;
 
 struct DeviceOwner {
   RTCDevice device = rtcNewDevice(nullptr);
+  DeviceOwner() = default;
+  DeviceOwner(const DeviceOwner&) = delete;
+  DeviceOwner& operator=(const DeviceOwner&) = delete;
   ~DeviceOwner() { rtcReleaseDevice(device); }
 };
 

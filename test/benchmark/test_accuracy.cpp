@@ -33,16 +33,16 @@ void checkRows(const std::vector<Row>& rows) {
     EXPECT_GT(row.timing.ns.median, 0.0);
     if (isExact(row)) {
       ++exact_rows;
-      EXPECT_EQ(row.errors.wrong(), 0u);
+      EXPECT_EQ(row.errors.wrong(), 0U);
     } else if (row.input == "hostile") {
-      EXPECT_GT(row.errors.wrong(), 0u) << "a hostile input that fools nobody shows nothing";
+      EXPECT_GT(row.errors.wrong(), 0U) << "a hostile input that fools nobody shows nothing";
     }
     if (row.method.find("rounded") != std::string::npos) {
       EXPECT_LE(quantile(row.errors.ulps, 1.0), 0.5);
       EXPECT_FALSE(row.errors.ulps.empty());
     }
   }
-  EXPECT_GE(exact_rows, 6u);
+  EXPECT_GE(exact_rows, 6U);
 }
 
 TEST(BenchmarkAccuracy, OnPairsTheLibraryIsRightAndPlainArithmeticIsNot) {

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <stdexcept>
 #include <thread>
-
-#include <time.h>
 
 namespace box_query::benchmark {
 namespace {

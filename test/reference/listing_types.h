@@ -9,8 +9,7 @@
 #include <cmath>
 #include <limits>
 
-namespace box_query {
-namespace listings {
+namespace box_query::listings {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -67,5 +66,4 @@ struct Found {
   Vector3 point[2];
 };
 
-}  // namespace listings
-}  // namespace box_query
+}  // namespace box_query::listings

@@ -6,9 +6,7 @@
 
 #include "reference/listings.h"
 
-namespace box_query {
-namespace listings {
-namespace as_printed {
+namespace box_query::listings::as_printed {
 
 /// Equation (3): the last row has D.U1 where it needs D.U2.
 inline bool equation3(const CenteredSegment3& segment, const OrientedBox3& box) {
@@ -106,6 +104,4 @@ inline Found findIntersection(const Segment& segment, const OrientedBox3& box) {
 
 }  // namespace listing10
 
-}  // namespace as_printed
-}  // namespace listings
-}  // namespace box_query
+}  // namespace box_query::listings::as_printed

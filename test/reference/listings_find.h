@@ -8,8 +8,7 @@
 
 #include <algorithm>
 
-namespace box_query {
-namespace listings {
+namespace box_query::listings {
 
 namespace listing7 {
 
@@ -200,5 +199,4 @@ inline Found findIntersection(const Segment& segment, const OrientedBox3& box) {
 
 }  // namespace listing10
 
-}  // namespace listings
-}  // namespace box_query
+}  // namespace box_query::listings

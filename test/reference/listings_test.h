@@ -6,8 +6,7 @@
 
 #include "reference/listing_types.h"
 
-namespace box_query {
-namespace listings {
+namespace box_query::listings {
 
 namespace listing1 {
 
@@ -171,5 +170,4 @@ inline bool testIntersection(const Segment& segment, const OrientedBox3& box) {
 
 }  // namespace listing6
 
-}  // namespace listings
-}  // namespace box_query
+}  // namespace box_query::listings

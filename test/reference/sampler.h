@@ -10,8 +10,7 @@
 #include <limits>
 #include <random>
 
-namespace box_query {
-namespace reference {
+namespace box_query::reference {
 
 class Sampler {
  public:
@@ -39,7 +38,7 @@ class Sampler {
   /// Any direction, between 0.1 and 1 long.
   Vector3 direction() {
     while (true) {
-      const Vector3 v = vector(-1.0, 1.0);
+      Vector3 v = vector(-1.0, 1.0);
       if (v.norm() >= 0.1 && v.norm() <= 1.0) {
         return v;
       }
@@ -69,5 +68,4 @@ class Sampler {
   std::mt19937_64 engine_;
 };
 
-}  // namespace reference
-}  // namespace box_query
+}  // namespace box_query::reference

@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace box_query {
-namespace reference {
+namespace box_query::reference {
 namespace {
 
 /// a + b is a double.
@@ -182,5 +181,4 @@ SegmentQuery SceneQueries::touchingSegment(int n) {
   return query;
 }
 
-}  // namespace reference
-}  // namespace box_query
+}  // namespace box_query::reference

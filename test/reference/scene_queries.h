@@ -10,8 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace box_query {
-namespace reference {
+namespace box_query::reference {
 
 struct RayQuery {
   Ray ray;
@@ -74,5 +73,4 @@ class SceneQueries {
   int aligned_faces_ = 0;
 };
 
-}  // namespace reference
-}  // namespace box_query
+}  // namespace box_query::reference

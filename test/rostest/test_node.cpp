@@ -31,8 +31,6 @@
 #include <unistd.h>
 #include <visualization_msgs/Marker.h>
 
-extern char** environ;
-
 namespace {
 
 struct Ending {
@@ -50,7 +48,6 @@ class Process {
       argv.push_back(argument.data());
     }
     argv.push_back(nullptr);
-    output_ = std::tmpfile();
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, fileno(output_), STDOUT_FILENO);
@@ -114,7 +111,7 @@ class Process {
 
  private:
   pid_t pid_ = 0;
-  std::FILE* output_ = nullptr;
+  std::FILE* output_ = std::tmpfile();
   bool ended_ = false;
 };
 

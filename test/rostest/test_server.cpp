@@ -76,7 +76,7 @@ Snapshot rebuilt(const GetSceneResponse& response) {
   std::vector<Box> boxes;
   for (std::size_t i = 0; i < response.poses.size(); ++i) {
     const geometry_msgs::Pose& pose = response.poses[i];
-    boxes.push_back(OrientedBox{
+    boxes.emplace_back(OrientedBox{
         fromMessage(pose.position),
         Quaternion(pose.orientation.w, pose.orientation.x, pose.orientation.y, pose.orientation.z),
         0.5 * fromMessage(response.sizes[i])});

@@ -59,8 +59,8 @@ struct Change {
   int length_power = 0;
 
   void swapSides(int axis) {
-    std::swap(faces[static_cast<std::size_t>(2 * axis)],
-              faces[static_cast<std::size_t>(2 * axis + 1)]);
+    const std::size_t low = 2 * static_cast<std::size_t>(axis);
+    std::swap(faces[low], faces[low + 1]);
   }
   FaceSet operator()(FaceSet set) const {
     unsigned bits = 0;

@@ -43,7 +43,7 @@ class HostileInput {
   Quaternion quaternion() {
     for (;;) {
       const Vector3 u = below(3) == 0 ? Vector3::Zero() : vector(1);
-      const Quaternion q(number(1), u.x(), u.y(), u.z());
+      Quaternion q(number(1), u.x(), u.y(), u.z());
       if ((q.coeffs().array() != 0.0).any()) {
         return q;
       }

@@ -50,7 +50,7 @@ TEST(OracleRounding, AcceptsTheRootOfTheProcessorAndNoOther) {
   for (int i = 0; i < 100000; ++i) {
     double a = anyMagnitude(engine);
     if (i % 3 == 0) {
-      const double root = static_cast<double>(engine() % 90000000U);
+      const auto root = static_cast<double>(engine() % 90000000U);
       a = root * root;
     }
     const oracle::Fraction exact{a, 1.0};

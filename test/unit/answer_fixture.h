@@ -70,7 +70,7 @@ inline Snapshot randomSnapshot(int count, unsigned seed) {
   snapshot.names.clear();
   std::vector<Box> boxes;
   for (int i = 0; i < count; ++i) {
-    boxes.push_back(OrientedBox{
+    boxes.emplace_back(OrientedBox{
         {position(random), position(random), position(random)},
         Quaternion(normal(random), normal(random), normal(random), normal(random)).normalized(),
         {half(random), half(random), half(random)}});

@@ -50,7 +50,7 @@ inline const BoxSource& sourceNamed(std::string_view type) {
 inline DecodedMessage decodeBytes(std::string_view type, const Bytes& bytes,
                                   std::size_t max_boxes = kPlenty) {
   // A copy that ends where the message ends, so that a sanitizer sees what reads beyond.
-  const Bytes exact(bytes);
+  const Bytes exact(bytes.begin(), bytes.end());
   Limits limits;
   limits.boxes = max_boxes;
   return decodeMessage(sourceNamed(type), exact.data(), exact.size(), limits);

@@ -34,7 +34,7 @@ bool same(double a, double b) {
 /// What is true of every answer.
 template <typename T, typename BoxType>
 Intersection checked(const T& linear, const BoxType& box) {
-  const Intersection result = findIntersection(linear, box);
+  Intersection result = findIntersection(linear, box);
   EXPECT_EQ(testIntersection(linear, box), result.num_points > 0);
   EXPECT_EQ(result.num_points == 0, std::isnan(result.enter_point[0]));
   if (result.num_points > 0) {
@@ -52,7 +52,7 @@ Intersection checked(const T& linear, const BoxType& box) {
 /// The same for the unit cube in both of its forms.
 template <typename T>
 Intersection inCube(const T& linear) {
-  const Intersection a = checked(linear, kCube);
+  Intersection a = checked(linear, kCube);
   const Intersection b = checked(linear, kOrientedCube);
   EXPECT_EQ(a.num_points, b.num_points);
   EXPECT_TRUE(same(a.t_enter, b.t_enter) && same(a.t_exit, b.t_exit));

@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace box_query {
-namespace listings {
+namespace box_query::listings {
 namespace {
 
 using reference::Sampler;
@@ -226,5 +225,4 @@ TEST(ListingsAsPrinted, Section22LetsAPointOutsideTouch) {
 }
 
 }  // namespace
-}  // namespace listings
-}  // namespace box_query
+}  // namespace box_query::listings

@@ -35,7 +35,7 @@ XmlRpcValue listOf(const std::vector<XmlRpcValue>& items) {
 
 Parameters readValues(const XmlRpcValue& values) {
   std::vector<std::string> unknown;
-  const Parameters parameters = Parameters::fromValues(values, "/node", unknown);
+  Parameters parameters = Parameters::fromValues(values, "/node", unknown);
   EXPECT_TRUE(unknown.empty()) << unknown.front();
   return parameters;
 }

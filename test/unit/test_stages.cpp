@@ -142,10 +142,10 @@ Scene shelves() {
     for (int level = 0; level < 5; ++level) {
       const Vector3 corner(bay, 0.0, 0.5 * level);
       if (level % 2 == 0) {
-        boxes.push_back(AlignedBox{corner, corner + Vector3(1.0, 0.5, 0.5)});
+        boxes.emplace_back(AlignedBox{corner, corner + Vector3(1.0, 0.5, 0.5)});
       } else {  // the same, given as an oriented box turned by 90 degrees about z
-        boxes.push_back(OrientedBox{corner + Vector3(0.5, 0.25, 0.25), Quaternion(0.7, 0, 0, 0.7),
-                                    Vector3(0.25, 0.5, 0.25)});
+        boxes.emplace_back(OrientedBox{corner + Vector3(0.5, 0.25, 0.25),
+                                       Quaternion(0.7, 0, 0, 0.7), Vector3(0.25, 0.5, 0.25)});
       }
     }
   }
@@ -156,7 +156,7 @@ TEST(Stages, RandomScenesAreDecidedInDouble) {
   Random random;
   std::vector<Box> boxes;
   for (int i = 0; i < 64; ++i) {
-    boxes.push_back(OrientedBox{
+    boxes.emplace_back(OrientedBox{
         random.vector(8.0), Quaternion(random(-1, 1), random(-1, 1), random(-1, 1), random(-1, 1)),
         Vector3(random(0.1, 1.5), random(0.1, 1.5), random(0.1, 1.5))});
   }

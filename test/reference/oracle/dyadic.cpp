@@ -51,7 +51,7 @@ Dyadic Dyadic::sum(const Dyadic& a, const Dyadic& b, int sign) {
   }
   const auto add = sign > 0 ? mpz_add : mpz_sub;
   Dyadic result;
-  const mpz_ptr out = result.mantissa_.get_mpz_t();
+  auto* const out = result.mantissa_.get_mpz_t();
   if (a.exponent_ >= b.exponent_) {
     mpz_mul_2exp(out, a.mantissa_.get_mpz_t(), static_cast<mp_bitcnt_t>(a.exponent_ - b.exponent_));
     add(out, out, b.mantissa_.get_mpz_t());

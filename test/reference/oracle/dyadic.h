@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include <gmpxx.h>
 
@@ -71,8 +72,8 @@ struct Root {
   Dyadic discriminant;
 
   Root() = default;
-  Root(const Dyadic& a_, const Dyadic& b_, const Dyadic& discriminant_)
-      : a(a_), b(b_), discriminant(discriminant_) {}
+  Root(Dyadic a_, Dyadic b_, Dyadic discriminant_)
+      : a(std::move(a_)), b(std::move(b_)), discriminant(std::move(discriminant_)) {}
   explicit Root(const Fraction& value) : a(value.denominator), b(-value.numerator) {}
   explicit Root(double value) : b(-value) {}
 };
