@@ -11,6 +11,7 @@ class NearestList {
   void clear() {
     bound_ = kNoBound;
     lower_ = 0.0F;
+    best_ = 0;
     is_full_ = false;
     count_ = 0;
   }
@@ -104,6 +105,16 @@ class NearestOneSearch {
   void visit(std::uint32_t leaf) {
     ++work_.nodes;
     list_.add(view_, segment_, leaf);
+    fetchBest();
+  }
+  /// What its distance will be rounded from comes from memory while other leaves are looked at.
+  void fetchBest() const {
+    const std::uint32_t best = list_.best();
+    const BoxRecord& record = view_.records[best];
+    prefetch(record.column[0]);
+    prefetch(record.column[2]);
+    prefetch(view_.rests[best].column[0]);
+    prefetch(view_.box_of_record + best);
   }
   void goTo(int level, std::uint32_t child) {
     if (level > 1) {
@@ -166,8 +177,9 @@ class NearestOneSearch {
 };
 
 /// Offers what is left of a list.
-static void offerListed(const SceneView& view, const SegmentQuery& query, const NearestList& list,
-                        Approach approach, void* context, Work& work) {
+[[gnu::noinline]] static void offerListed(const SceneView& view, const SegmentQuery& query,
+                                          const NearestList& list, Approach approach, void* context,
+                                          Work& work) {
   float bound = list.bound();
   for (int i = 0; i < list.count(); ++i) {
     if (list.lower(i) <= bound) {
@@ -184,8 +196,9 @@ static void offerListed(const SceneView& view, const SegmentQuery& query, const 
 }
 
 /// Says which is the nearest, or offers all that may be.
-static bool decide(const SceneView& view, const SegmentQuery& query, NearestList& list,
-                   Approach approach, void* context, NearestOne* one, Work& work) {
+[[gnu::always_inline]] static inline bool decide(const SceneView& view, const SegmentQuery& query,
+                                                 NearestList& list, Approach approach,
+                                                 void* context, NearestOne* one, Work& work) {
   list.tidy();
   if (list.isOne() && one != nullptr) {
     *one = {list.best(), list.t()};

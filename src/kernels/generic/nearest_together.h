@@ -235,7 +235,7 @@ class NearestTogether {
     c.list.add(view_, c.segment, leaf);
   }
 
-  void finish(NearCompanion& c) {
+  [[gnu::noinline]] void finish(NearCompanion& c) {
     OneApproach one{approach_, context_, c.number};
     decide(view_, *c.query, c.list, OneApproach::take, &one,
            ones_ != nullptr ? ones_ + c.number : nullptr, work_);
