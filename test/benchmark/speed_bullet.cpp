@@ -135,8 +135,9 @@ class Bullet final : public SpeedMethod {
   static double distance(const btConvexShape& shape, const Vector3& at,
                          const btCollisionObject& object) {
     btVoronoiSimplexSolver simplex;
-    btGjkPairDetector detector(
-        &shape, static_cast<const btConvexShape*>(object.getCollisionShape()), &simplex, nullptr);
+    const auto* const box =
+        static_cast<const btBoxShape*>(object.getCollisionShape());  // NOLINT: all of them are
+    btGjkPairDetector detector(&shape, box, &simplex, nullptr);
     btGjkPairDetector::ClosestPointInput input;
     input.m_transformA.setIdentity();
     input.m_transformA.setOrigin(toBullet(at));
