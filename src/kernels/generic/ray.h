@@ -132,21 +132,40 @@ static inline bool clipToScene(const SceneView& view, FloatRay& f) {
                                                                         : Outcome::kReady;
 }
 
+/// Where the near and the far planes of the axes are among those of Bounds, counted in floats: for
+/// each set of axes along which a ray goes down.
+struct PlanesOfAxes {
+  std::ptrdiff_t near[3];
+  std::ptrdiff_t far[3];
+};
+constexpr PlanesOfAxes planesOf(int goes_down) {
+  PlanesOfAxes planes = {};
+  for (int i = 0; i < 3; ++i) {
+    const int down = (goes_down >> i) & 1;
+    planes.near[i] = (3 * down + i) * kSlots;
+    planes.far[i] = (3 * (1 - down) + i) * kSlots;
+  }
+  return planes;
+}
+constexpr PlanesOfAxes kPlanes[] = {planesOf(0), planesOf(1), planesOf(2), planesOf(3),
+                                    planesOf(4), planesOf(5), planesOf(6), planesOf(7)};
+
 /// A ray in float as it is compared with many bounds: read once, since what is written meanwhile
 /// could be the ray for all that the compiler knows.
 struct RayLanes {
   // (Without a loop, which would keep GCC from taking the arrays apart.)
   [[gnu::always_inline]] explicit RayLanes(const FloatRay& ray)
-      : near_plane{(ray.goes_down & 1) * 3, (ray.goes_down >> 1 & 1) * 3 + 1,
-                   (ray.goes_down >> 2 & 1) * 3 + 2},
-        far_plane{3 - near_plane[0], 5 - near_plane[1], 7 - near_plane[2]},
+      : near_plane{kPlanes[ray.goes_down].near[0], kPlanes[ray.goes_down].near[1],
+                   kPlanes[ray.goes_down].near[2]},
+        far_plane{kPlanes[ray.goes_down].far[0], kPlanes[ray.goes_down].far[1],
+                  kPlanes[ray.goes_down].far[2]},
         inverse{kept16(ray.inverse[0]), kept16(ray.inverse[1]), kept16(ray.inverse[2])},
         near_shift{kept16(ray.near_shift[0]), kept16(ray.near_shift[1]), kept16(ray.near_shift[2])},
         far_shift{kept16(ray.far_shift[0]), kept16(ray.far_shift[1]), kept16(ray.far_shift[2])},
         begin(kept16(ray.begin_s)),
         end(kept16(ray.end_s)) {}
 
-  std::ptrdiff_t near_plane[3];  ///< Of Bounds, counted through minimum and maximum.
+  std::ptrdiff_t near_plane[3];  ///< see PlanesOfAxes
   std::ptrdiff_t far_plane[3];
   Kept16 inverse[3];
   Kept16 near_shift[3];
@@ -159,13 +178,13 @@ struct RayLanes {
 /// @param near where it enters them, too early by at most what the floats cannot tell
 [[gnu::always_inline]] static inline std::uint32_t meets(const Bounds& bounds, const RayLanes& ray,
                                                          Float16& near) {
-  const auto* planes = &bounds.plane[0][0];
+  const float* planes = &bounds.plane[0][0][0];
   const auto nearPlane = [&](int i) {
-    return multiplyAdd(load16(planes[ray.near_plane[i]]), all16(ray.inverse[i]),
+    return multiplyAdd(load16(planes + ray.near_plane[i]), all16(ray.inverse[i]),
                        all16(ray.near_shift[i]));
   };
   const auto farPlane = [&](int i) {
-    return multiplyAdd(load16(planes[ray.far_plane[i]]), all16(ray.inverse[i]),
+    return multiplyAdd(load16(planes + ray.far_plane[i]), all16(ray.inverse[i]),
                        all16(ray.far_shift[i]));
   };
   near = larger(larger(nearPlane(0), nearPlane(1)), larger(nearPlane(2), all16(ray.begin)));

@@ -230,25 +230,49 @@ class AllVisit : public RayVisit {
   Answer answer() const { return answerOfFound(); }
 };
 
+/// Of a ray that is not compared with any bounds.
+static inline Answer answerOf(Outcome outcome) {
+  return outcome == Outcome::kMiss ? Answer::kNone : Answer::kNotTaken;
+}
+
+// One function for each kind of tree, in which a ray is prepared too: little goes through memory,
+// and none makes room for what another needs.
+
 template <typename Visit>
-[[gnu::noinline]] static Answer searchTree(const SceneView& view, const RayQuery& query,
-                                           Found& found, FloatRay& ray) {
+[[gnu::noinline]] static Answer searchList(const SceneView& view, const RayQuery& query,
+                                           Found& found) {
+  FloatRay ray;
+  const Outcome outcome = prepare(view, query, ray, false);
+  if (outcome != Outcome::kReady) {
+    return answerOf(outcome);
+  }
+  return searchList<Visit>(view, query, found, ray);
+}
+
+template <typename Visit>
+[[gnu::noinline]] static Answer searchTwoLevels(const SceneView& view, const RayQuery& query,
+                                                Found& found) {
+  FloatRay ray;
+  const Outcome outcome = prepare(view, query, ray, false);
+  if (outcome != Outcome::kReady) {
+    return answerOf(outcome);
+  }
   Visit visit(view, query, found, ray);
-  descendInStretches(view, ray, visit);
+  visitTwoLevels(view, ray, visit);
   return visit.answer();
 }
 
-/// Searches the bounds of a scene.
 template <typename Visit>
-[[gnu::noinline]] static Answer searchBounds(const SceneView& view, const RayQuery& query,
-                                             Found& found) {
+[[gnu::noinline]] static Answer searchTree(const SceneView& view, const RayQuery& query,
+                                           Found& found) {
   FloatRay ray;
-  const Outcome outcome = prepare(view, query, ray, view.depth > 2);
+  const Outcome outcome = prepare(view, query, ray, true);
   if (outcome != Outcome::kReady) {
-    return outcome == Outcome::kMiss ? Answer::kNone : Answer::kNotTaken;
+    return answerOf(outcome);
   }
-  return view.depth == 1 ? searchList<Visit>(view, query, found, ray)
-                         : searchTree<Visit>(view, query, found, ray);
+  Visit visit(view, query, found, ray);
+  descendInStretches(view, ray, visit);
+  return visit.answer();
 }
 
 /// Whether a ray is compared with the boxes of a scene themselves.
@@ -266,7 +290,16 @@ static Answer search(const SceneView& view, const RayQuery& query, Found& found)
       return searchBlocks<Visit>(view, query, found, ray);
     }
   }
-  return view.depth > 0 ? searchBounds<Visit>(view, query, found) : Answer::kNone;
+  switch (view.depth) {
+    case 0:
+      return Answer::kNone;
+    case 1:
+      return searchList<Visit>(view, query, found);
+    case 2:
+      return searchTwoLevels<Visit>(view, query, found);
+    default:
+      return searchTree<Visit>(view, query, found);
+  }
 }
 
 static Answer closest(const SceneView& view, const RayQuery& query, Found& found) {
@@ -281,7 +314,7 @@ static Answer all(const SceneView& view, const RayQuery& query, Found& found) {
   FloatRay ray;
   const Outcome outcome = view.depth > 0 ? prepare(view, query, ray, false) : Outcome::kMiss;
   if (outcome != Outcome::kReady) {
-    return outcome == Outcome::kMiss ? Answer::kNone : Answer::kNotTaken;
+    return answerOf(outcome);
   }
   AllVisit visit(view, query, found, ray);
   descend(view, ray, visit);

@@ -13,7 +13,12 @@ alignas(64) constexpr std::uint32_t kRoots[kSlots] = {0, 1, 2,  3,  4,  5,  6,  
 /// @param visit visit(record) -> false to end; may shorten the ray
 template <typename Visit>
 static bool descend(const SceneView& view, int level, const std::uint32_t* nodes, int count,
-                    FloatRay& ray, Visit& visit) {
+                    FloatRay& ray, Visit& visit);
+
+template <typename Visit>
+[[gnu::always_inline]] static inline bool descendHere(const SceneView& view, int level,
+                                                      const std::uint32_t* nodes, int count,
+                                                      FloatRay& ray, Visit& visit) {
   alignas(64) std::uint32_t lists[2][kListed + kSlots];
   const RayLanes lanes(ray);
   for (; level > 0; --level) {
@@ -41,7 +46,7 @@ static bool descend(const SceneView& view, int level, const std::uint32_t* nodes
   int listed = 0;
   alignas(64) float nears[kListed + kSlots];
   const auto visitListed = [&] {
-    if (listed > 0 && !visit.begin()) {
+    if (!visit.begin()) {
       return false;
     }
     for (int i = 0; i < listed; ++i) {
@@ -62,23 +67,27 @@ static bool descend(const SceneView& view, int level, const std::uint32_t* nodes
       listed = 0;
     }
   }
-  return visitListed();
+  return listed == 0 || visitListed();
 }
 
 template <typename Visit>
-static bool descend(const SceneView& view, FloatRay& ray, Visit& visit) {
+[[gnu::noinline]] static bool descend(const SceneView& view, int level, const std::uint32_t* nodes,
+                                      int count, FloatRay& ray, Visit& visit) {
+  return descendHere(view, level, nodes, count, ray, visit);
+}
+
+template <typename Visit>
+[[gnu::always_inline]] static inline bool descend(const SceneView& view, FloatRay& ray,
+                                                  Visit& visit) {
   const int top = view.depth - 1;
-  return descend(view, top, kRoots, static_cast<int>(view.levels[top].nodes), ray, visit);
+  return descendHere(view, top, kRoots, static_cast<int>(view.levels[top].nodes), ray, visit);
 }
 
 /// Visits records from near to far, a stretch of the ray at a time, as long as visit.end() [s] lies
 /// beyond. A record may be visited in more than one stretch.
 template <typename Visit>
-static void descendInStretches(const SceneView& view, FloatRay& ray, Visit& visit) {
-  if (view.depth == 2) {
-    visitTwoLevels(view, ray, visit);
-    return;
-  }
+[[gnu::always_inline]] static inline void descendInStretches(const SceneView& view, FloatRay& ray,
+                                                             Visit& visit) {
   float begin = ray.begin_s;
   float length = ray.stretch_s;
   for (;;) {
