@@ -4,6 +4,8 @@
 #include <box_query/batch.h>
 
 #include <atomic>
+#include <cfenv>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -14,6 +16,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 namespace box_query {
 namespace {
@@ -198,6 +201,47 @@ TEST(Batch, IsAskedFromWithinOthersAndFromManyThreads) {
   }
   EXPECT_EQ(asked % 3000, 0U);
   EXPECT_GE(asked, 4U * 3U * 3000U);
+}
+
+TEST(Batch, BeginsNoOtherPartWhereAPartWaits) {
+  using Limit = tbb::global_control;
+  const Limit threads(Limit::max_allowed_parallelism, 8);  // however few cores there are
+  std::atomic<int> begun_within{0};
+  for (int repetition = 0; repetition < 20; ++repetition) {
+    forEachPart(20000, 4, [&](std::size_t /*begin*/, std::size_t /*end*/) {
+      thread_local bool is_within = false;
+      begun_within += is_within ? 1 : 0;
+      is_within = true;
+      forEachPart(1000, 4, [](std::size_t /*from*/, std::size_t /*to*/) {
+        std::this_thread::sleep_for(std::chrono::microseconds(10));
+      });
+      is_within = false;
+    });
+  }
+  EXPECT_EQ(begun_within, 0);
+}
+
+/// How the threads of a batch round 1/3.
+std::set<double> thirds() {
+  std::mutex mutex;
+  std::set<double> found;
+  forEachPart(5000, 2, [&](std::size_t /*begin*/, std::size_t /*end*/) {
+    const volatile double one = 1.0;
+    const double third = one / 3.0;
+    const std::lock_guard<std::mutex> lock(mutex);
+    found.insert(third);
+  });
+  return found;
+}
+
+TEST(Batch, RoundsAsItsThreadDoesAtTheTime) {
+  std::thread([] {
+    const std::set<double> nearest = {1.0 / 3.0};
+    std::fesetround(FE_UPWARD);
+    EXPECT_NE(thirds(), nearest);
+    std::fesetround(FE_TONEAREST);
+    EXPECT_EQ(thirds(), nearest);
+  }).join();
 }
 
 TEST(Batch, OfNothingIsNothing) {
