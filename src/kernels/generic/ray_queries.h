@@ -22,6 +22,9 @@ class RayVisit {
     return is_taken_;
   }
 
+  /// Where GCC does not see that nothing is compared in double before begin().
+  void clear() { ray_ = RayInDouble{}; }
+
   Found* found = nullptr;
 
  protected:
@@ -258,6 +261,7 @@ template <typename Visit>
     return answerOf(outcome);
   }
   Visit visit(view, query, found, ray);
+  visit.clear();
   visitTwoLevels(view, ray, visit);
   return visit.answer();
 }

@@ -181,11 +181,12 @@ template <typename Visit>
 /// is looked at.
 /// @param leaves a bit for each that is compared, by its slot among the roots
 template <typename Visit>
-static bool visitLeaves(const SceneView& view, const std::uint64_t* leaves, FloatRay& ray,
-                        Visit& visit) {
+[[gnu::always_inline]] static inline bool visitLeaves(const SceneView& view,
+                                                      const std::uint64_t* leaves,
+                                                      const RayLanes& lanes, FloatRay& ray,
+                                                      Visit& visit) {
   const Level& top = view.levels[1];
   const Level& here = view.levels[0];
-  const RayLanes lanes(ray);
   alignas(64) float nears[kNodesAWord * kSlots];
   std::uint32_t first[kNodesAWord];
   const auto record = [&first](int slot) {
@@ -221,29 +222,32 @@ static void visitTwoLevels(const SceneView& view, FloatRay& ray, Visit& visit) {
   visit.found->work->nodes += top.nodes;
   alignas(64) float nears[kMostRootNodes * kSlots];
   std::uint64_t later[kRootWords] = {0, 0};
-  meetsNodes(top.bounds, roots, RayLanes(ray), nears, later);
+  RayLanes lanes(ray);
+  meetsNodes(top.bounds, roots, lanes, nears, later);
   // (Where that can be foretold, or else the branch would cost more than it spares.)
   if (view.meets_few_leaves && (later[0] | later[1]) == 0) {
     return;
   }
+  const float whole = ray.end_s;
   float length = ray.stretch_s;
-  if (!(ray.begin_s + length < ray.end_s)) {
-    visitLeaves(view, later, ray, visit);
-    return;
-  }
   for (float end = ray.begin_s + length;; length *= 2.0F, end += length) {
-    std::uint64_t due[kRootWords] = {0, 0};
-    for (int w = 0, k = 0; k < roots; ++w) {
-      std::uint64_t entered = 0;
-      for (int shift = 0; shift < 64 && k < roots; shift += kSlots, ++k) {
-        entered |= static_cast<std::uint64_t>(notAbove(load16(nears + k * kSlots), all16(end)))
-                   << shift;
+    std::uint64_t due[kRootWords] = {later[0], later[1]};
+    if (end < whole) {
+      for (int w = 0, k = 0; k < roots; ++w) {
+        std::uint64_t entered = 0;
+        for (int shift = 0; shift < 64 && k < roots; shift += kSlots, ++k) {
+          entered |= static_cast<std::uint64_t>(notAbove(load16(nears + k * kSlots), all16(end)))
+                     << shift;
+        }
+        due[w] &= entered;
       }
-      due[w] = later[w] & entered;
-      later[w] &= ~entered;
     }
-    if (!visitLeaves(view, due, ray, visit) || (later[0] | later[1]) == 0 || !(end < visit.end())) {
+    later[0] &= ~due[0];
+    later[1] &= ~due[1];
+    if (!visitLeaves(view, due, lanes, ray, visit) || (later[0] | later[1]) == 0 ||
+        !(end < visit.end())) {
       return;
     }
+    lanes.end = kept16(ray.end_s);
   }
 }
