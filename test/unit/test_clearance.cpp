@@ -2,6 +2,7 @@
 #include <box_query/distance.h>
 #include <box_query/scene.h>
 
+#include <cfenv>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -189,6 +190,25 @@ TEST(SceneClearance, AgreesWithEveryBoxAlone) {
   }
   EXPECT_GT(clear, 20);
   EXPECT_GT(blocked_later, 20);
+}
+
+TEST(SceneClearance, APathAmongManyBoxesIsNotClearHoweverItsThreadRounds) {
+  std::vector<Box> boxes;
+  for (int i = 0; i < 3000; ++i) {
+    boxes.emplace_back(cubeAt(4.0 * (i % 50), 4.0 * (i / 50), 0.0));
+  }
+  const Scene scene(boxes);
+  for (const int mode : {FE_TONEAREST, FE_DOWNWARD, FE_UPWARD, FE_TOWARDZERO}) {
+    std::fesetround(mode);
+    int clear = 0;
+    for (const double x : {40.0, 80.0}) {
+      for (const double z : {-8.0, 8.0}) {  // up and down
+        clear += scene.isClear({{x, 40.0, z}, {x + 0.5, 40.5, -z}}, 0.0) ? 1 : 0;
+      }
+    }
+    std::fesetround(FE_TONEAREST);
+    EXPECT_EQ(clear, 0) << "rounding mode " << mode;
+  }
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ static inline bool clipToScene(const SceneView& view, FloatRay& f) {
   store(f.inverse, inverse);
   store(f.near_shift, (quad(-0.0F) - (ray.origin + apart)) * inverse);
   store(f.far_shift, (apart - ray.origin) * inverse);
-  f.goes_down = signsOf(ray.direction);
+  f.goes_down = signsOf(ray.direction) & 7U;  // 0 - 0 is -0 where a thread rounds down
   f.scale = 1.0;
   f.setRange(0.0F, endOf(query, ray));
   f.certain_end = certainEnd(f.end_s);
