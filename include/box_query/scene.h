@@ -109,7 +109,7 @@ struct SceneUpdate {
 
 /// Which kernels scenes use: "avx512", "avx2" or "portable". They are the widest that the CPU has,
 /// or those that the environment variable BOX_QUERY_KERNEL names; answers are the same bits with
-/// each.
+/// each, but for the enclosures of castClosest().
 const char* activeKernels() noexcept;
 /// Whether BOX_QUERY_KERNEL names kernels that there are not, or that this CPU cannot run: then it
 /// is as if it were not set.
