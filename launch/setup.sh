@@ -14,7 +14,7 @@ export PATH=/usr/bin:$PATH
 # Prints the packages of a group, by the names of Debian's own ROS or of packages.ros.org.
 bq_packages() {
   case $bq_ros/$1 in
-    */build) echo build-essential cmake libeigen3-dev libboost-dev libtbb-dev ;;&
+    */build) echo build-essential cmake ninja-build libeigen3-dev libboost-dev libtbb-dev ;;&
     */test) echo libgmp-dev libgtest-dev ;;&
     */valgrind) echo valgrind ;;
     */benchmark) echo python3-matplotlib ;;
@@ -162,12 +162,14 @@ bq_configure() {
   build_dir=$1
   cache=$build_dir/CMakeCache.txt
   shift
-  # A checkout that was moved or copied is built anew.
-  if [ -e "$cache" ] && ! grep -qxF "CMAKE_CACHEFILE_DIR:INTERNAL=$build_dir" "$cache"; then
+  # A checkout that was moved or copied is built anew, and what make has built.
+  if [ -e "$cache" ] &&
+    ! { grep -qxF "CMAKE_CACHEFILE_DIR:INTERNAL=$build_dir" "$cache" &&
+      grep -qxF 'CMAKE_GENERATOR:INTERNAL=Ninja' "$cache"; }; then
     rm -rf "$build_dir"
   fi
   mkdir -p "$build_dir" || return 1
-  if [ ! -e "$build_dir/Makefile" ] ||
+  if [ ! -e "$build_dir/build.ninja" ] ||
     { [ $tests = ON ] && ! bq_has_tests "$build_dir"; }; then
     # roslaunch looks for files in the whole checkout, but for hidden folders: what is installed must not be found twice.
     echo "Configuring in $build_dir" >&2
@@ -176,10 +178,10 @@ bq_configure() {
       set -- -DBOX_QUERY_PRECOMPILE=ON "$@"
     fi
     bq_logged "$build_dir/configure.log" cmake -S "$bq_source_dir" -B "$build_dir" \
-      -G 'Unix Makefiles' -DPYTHON_EXECUTABLE=/usr/bin/python3 \
+      -G Ninja -DPYTHON_EXECUTABLE=/usr/bin/python3 \
       -DCMAKE_INSTALL_PREFIX="$build_dir/.install" -DCATKIN_ENABLE_TESTING=$tests "$@" || return 1
   else  # again, if CMake's files have changed
-    bq_logged "$build_dir/configure.log" cmake --build "$build_dir" --target cmake_check_build_system || return 1
+    bq_logged "$build_dir/configure.log" cmake --build "$build_dir" --target build.ninja || return 1
   fi
 }
 
@@ -193,6 +195,7 @@ bq_build() {
   shift
   bq_configure $tests "$build_dir" || return 1
   echo "Building in $build_dir" >&2
+  # (make would build the targets one after the other.)
   bq_logged "$build_dir/build.log" cmake --build "$build_dir" --target "$@" \
     -- -j "$(nproc)" || return 1
   bq_source "$build_dir/devel/setup.bash"
