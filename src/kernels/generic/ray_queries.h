@@ -22,7 +22,7 @@ class RayVisit {
     return is_taken_;
   }
 
-  /// Where GCC does not see that nothing is compared in double before begin().
+  /// Sets what begin() prepares, where GCC does not see that nothing uses it before and warns.
   void clear() { ray_ = RayInDouble{}; }
 
   Found* found = nullptr;
@@ -47,7 +47,7 @@ class RayVisit {
   }
 
   bool isFull() const { return found->count == Found::kCapacity; }
-  void add(const Candidate& candidate) { found->candidates[found->count++] = candidate; }
+  void add(const Candidate& candidate) const { found->candidates[found->count++] = candidate; }
 
   /// Adds a candidate to those that the caller decides.
   /// @return false if the caller ends the query

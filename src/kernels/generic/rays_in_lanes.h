@@ -108,7 +108,7 @@ struct RaysOfLanes {
 
  private:
   static Float16 bitsOfAll(int number) {
-    float bits;
+    float bits = 0.0F;
     __builtin_memcpy(&bits, &number, sizeof(bits));
     return all16(bits);
   }
