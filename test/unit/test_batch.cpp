@@ -235,6 +235,16 @@ std::set<double> thirds() {
 }
 
 TEST(Batch, RoundsAsItsThreadDoesAtTheTime) {
+  const auto third_rounded = [](int mode) {
+    volatile double three = 3.0;
+    std::fesetround(mode);
+    const double third = 1.0 / three;
+    std::fesetround(FE_TONEAREST);
+    return third;
+  };
+  if (third_rounded(FE_UPWARD) == third_rounded(FE_TONEAREST)) {
+    GTEST_SKIP() << "this CPU has no way of rounding but to nearest: Valgrind's";
+  }
   std::thread([] {
     const std::set<double> nearest = {1.0 / 3.0};
     std::fesetround(FE_UPWARD);
