@@ -238,7 +238,7 @@ TEST(Batch, RoundsAsItsThreadDoesAtTheTime) {
   const auto third_rounded = [](int mode) {
     volatile double three = 3.0;
     std::fesetround(mode);
-    const double third = 1.0 / three;
+    volatile double third = 1.0 / three;  // here, and not after the next call
     std::fesetround(FE_TONEAREST);
     return third;
   };
