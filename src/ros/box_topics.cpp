@@ -3,6 +3,7 @@
 
 #include "ros/publishers.h"
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <utility>
@@ -61,10 +62,28 @@ void BoxTopics::decode() {
   }
 }
 
+namespace {
+
+/// Whether somebody has come to a topic since these were its publishers.
+bool hasCome(const std::string& topic, const Publishers& publishers) {
+  auto links = connectedPublishers();
+  if (!links) {
+    return false;
+  }
+  const std::set<std::string>& now = (*links)[topic];
+  return !std::includes(publishers.links.begin(), publishers.links.end(), now.begin(), now.end());
+}
+
+}  // namespace
+
 // The first publisher pins a subscription of any type to its own type for good, and roscpp refuses
 // publishers of another. Where none is connected, subscribing anew lets the next one be of any type
 // again; where one is, the others cannot be heard, and the scene is incomplete.
-void BoxTopics::checkPublishers(const TellUnheard& tell) {
+//
+// What a publisher says that has just come would be lost with its connection. So not at the first
+// look without one: where a publisher makes way for another, that is on its way.
+bool BoxTopics::checkPublishers(const TellUnheard& tell) {
+  bool is_soon_again = false;
   std::set<std::string> names;
   for (const Topic& topic : topics_) {
     names.insert(topic.name);
@@ -76,15 +95,23 @@ void BoxTopics::checkPublishers(const TellUnheard& tell) {
     const std::size_t connected = publishers.connected.size();
     const std::size_t registered = publishers.registered.size();
     const bool missing = registered > connected;
-    if (connected == 0 && (topic.connected || missing)) {
-      topic.subscriber.shutdown();
-      subscribe(index);
+    const bool is_alone = connected == 0;
+    topic.is_pinned = topic.is_pinned || !is_alone;
+    if (is_alone && (topic.is_pinned || missing)) {
+      if (!topic.was_alone) {
+        is_soon_again = true;
+      } else if (!hasCome(topic.name, publishers)) {
+        topic.subscriber.shutdown();
+        subscribe(index);
+        topic.is_pinned = false;
+      }
     }
-    const bool unheard = connected > 0 && missing && topic.missing;  // not just on its way
-    topic.connected = connected > 0;
+    const bool unheard = !is_alone && missing && topic.missing;  // not just on its way
+    topic.was_alone = is_alone;
     topic.missing = missing;
     tell(index, unheard ? registered - connected : 0, publishers.type);
   }
+  return is_soon_again;
 }
 
 }  // namespace box_query

@@ -37,14 +37,16 @@ class BoxTopics {
   /// Subscribes anew where that lets a publisher of another type be heard, and tells of every topic
   /// how many publishers cannot be heard, and the type of the one that came last. Asks the master;
   /// from one thread only, not within `receive`.
-  void checkPublishers(const TellUnheard& tell);
+  /// @return whether to look again soon: somebody has gone, and nobody has come yet
+  bool checkPublishers(const TellUnheard& tell);
 
  private:
   struct Topic {
     std::string name;
     ros::Subscriber subscriber;
+    bool is_pinned = false;  ///< there was a publisher since it was subscribed to
     // At the last look:
-    bool connected = false;  ///< to a publisher
+    bool was_alone = false;  ///< no publisher was connected
     bool missing = false;    ///< more publishers were there than were connected
   };
 

@@ -20,8 +20,9 @@ using Clock = Bell::Clock;
 
 /// Between looks at whether former publishers are gone, where somebody new has spoken.
 constexpr std::chrono::milliseconds kSuccessionCheck(50);
-/// Between looks at who publishes.
+/// Between looks at who publishes, and where nobody does any more.
 constexpr std::chrono::milliseconds kPublisherCheck(500);
+constexpr std::chrono::milliseconds kGoneCheck(100);
 
 /// The master may take its time, or hang.
 constexpr std::chrono::milliseconds kPatience(50);
@@ -87,16 +88,16 @@ void PublisherWatch::run(BoxTopics& topics) {
     forgetFormerPublishers();
     looked_.ring();
     if (Clock::now() >= publisher_check) {
-      checkPublishers(topics);
+      const bool is_soon_again = checkPublishers(topics);
       checkClock();
-      publisher_check = Clock::now() + kPublisherCheck;
+      publisher_check = Clock::now() + (is_soon_again ? kGoneCheck : kPublisherCheck);
     }
     bell_.waitPast(rings, Clock::now() + kSuccessionCheck);
   }
 }
 
-void PublisherWatch::checkPublishers(BoxTopics& topics) {
-  topics.checkPublishers(
+bool PublisherWatch::checkPublishers(BoxTopics& topics) {
+  return topics.checkPublishers(
       [this](std::size_t topic, std::size_t publishers, const std::string& type) {
         std::unique_lock<std::timed_mutex> lock(mutex_);
         const std::string warning = tracker_.setUnheard(topic, publishers, type);

@@ -48,7 +48,7 @@ class PublisherWatch {
 
  private:
   void run(BoxTopics& topics);
-  void checkPublishers(BoxTopics& topics);
+  bool checkPublishers(BoxTopics& topics);
   void checkClock();
   void forgetFormerPublishers();
 

@@ -56,7 +56,8 @@ std::optional<std::map<std::string, Publishers>> askForPublishers(
   }
   std::map<std::string, Publishers> publishers;
   for (const std::string& topic : topics) {
-    publishers[topic].connected = livingOf((*connections)[topic]);
+    publishers[topic].links = (*connections)[topic];
+    publishers[topic].connected = livingOf(publishers[topic].links);
   }
   try {
     readRegistered((*state)[0], publishers);  // then come subscribers and services

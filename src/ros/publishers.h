@@ -13,7 +13,8 @@ namespace box_query {
 struct Publishers {
   std::map<std::string, std::string> registered;  ///< addresses by names, as the master knows them
   std::set<std::string> connected;                ///< to this process
-  std::string type;                               ///< of the one that registered last
+  std::set<std::string> links;  ///< the same, and those whose connection roscpp tries to make again
+  std::string type;             ///< of the one that registered last
 };
 
 /// By topic; nothing if the master cannot be reached, or ROS shuts down.

@@ -79,9 +79,8 @@ class Talker {
   explicit Talker(const std::string& topic) : publisher_(node_.advertise<Message>(topic, 1000)) {}
 
   bool isHeard() {
-    return eventually([this] { return hasSubscribers(); });
+    return eventually([this] { return publisher_.getNumSubscribers() > 0; });
   }
-  bool hasSubscribers() const { return publisher_.getNumSubscribers() > 0; }
   void say(const Message& message) { publisher_.publish(message); }
 
  private:
@@ -147,29 +146,6 @@ class MonitorOfOneTopic : public testing::Test {
 
   bool holds(const std::string& expected) {
     return eventually([&] { return contents(*monitor_->currentScene()) == expected; });
-  }
-  /// Whether a publisher is heard that takes the place of talker_ and says this. Where the master's
-  /// word of the former's end comes late, roscpp drops for good what has come to the same topic in
-  /// the same process: such a connection is made again.
-  bool holdsFromNextTalker(const std::vector<visualization_msgs::Marker>& markers,
-                           const std::string& expected) {
-    for (int attempt = 0; attempt < 5; ++attempt) {
-      talker_.reset();  // else it is the same publisher for roscpp
-      talker_ = std::make_unique<ArrayTalker>(topic_);
-      if (!talker_->isHeard()) {
-        return false;
-      }
-      say(markers);
-      bool is_there = false;
-      eventually([&] {
-        is_there = contents(*monitor_->currentScene()) == expected;
-        return is_there || !talker_->hasSubscribers();
-      });
-      if (is_there || talker_->hasSubscribers()) {
-        return is_there;
-      }
-    }
-    return false;
   }
   bool becomes(bool complete) {
     return eventually([&] { return completenessOf(*monitor_).complete == complete; });
