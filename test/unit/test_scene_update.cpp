@@ -139,17 +139,23 @@ TEST(SceneUpdate, AnswersAreThoseOfANewScene) {
   EXPECT_GT(refitted, 15U);
 }
 
+/// Aligned boxes with centers within `spread` of the origin.
+std::vector<Box> boxesWithin(Sampler& sampler, std::size_t count, double spread, double least,
+                             double most) {
+  std::vector<Box> boxes;
+  while (boxes.size() < count) {
+    const Vector3 center = sampler.vector(-spread, spread);
+    const Vector3 size = sampler.vector(least, most);
+    boxes.emplace_back(AlignedBox{center - size, center + size});
+  }
+  return boxes;
+}
+
 /// So many in a heap that the kernels compare them themselves (Density::kHeaped) though they make
 /// more than a list.
 TEST(SceneUpdate, HeapedBoxesAreWhereTheyMovedTo) {
   Sampler sampler(8);
-  std::vector<Box> boxes;
-  while (boxes.size() < 160) {
-    const Vector3 center = sampler.vector(-6.0, 6.0);
-    const Vector3 size = sampler.vector(1.0, 3.0);
-    boxes.emplace_back(AlignedBox{center - size, center + size});
-  }
-  Scene scene(std::move(boxes));
+  Scene scene(boxesWithin(sampler, 160, 6.0, 1.0, 3.0));
   for (int step = 0; step < 12; ++step) {
     Next next = nextOf(sampler, scene.boxes(), step % 3 == 0 ? 0.01 : 0.0, 0.3, 2.0, 0);
     scene = scene.updated(next.boxes, next.previous);
@@ -159,13 +165,7 @@ TEST(SceneUpdate, HeapedBoxesAreWhereTheyMovedTo) {
 
 TEST(SceneUpdate, CrowdedBoxesThatNoKernelComparesThemselvesAreRefitted) {
   Sampler sampler(9);
-  std::vector<Box> boxes;
-  while (boxes.size() < 160) {
-    const Vector3 center = sampler.vector(-12.0, 12.0);
-    const Vector3 size = sampler.vector(0.3, 1.5);
-    boxes.emplace_back(AlignedBox{center - size, center + size});
-  }
-  Scene scene(std::move(boxes));
+  Scene scene(boxesWithin(sampler, 160, 12.0, 0.3, 1.5));
   const Next next = nextOf(sampler, scene.boxes(), 0.0, 0.1, 0.3, 0);
   scene = scene.updated(next.boxes, next.previous);
   EXPECT_FALSE(scene.update().rebuilt);
