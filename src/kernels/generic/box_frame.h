@@ -4,7 +4,7 @@
 // In double-double n and M are within 8u^2 n (exact/bounds.h). The rest of M_ij / n beside a double
 // within 16u of it is (M_ij - n R_ij) / n, in which the first difference is exact, those of the
 // second parts are off by 40u^2 n, and the quotient by 4u of 16u: an entry is within 128u^2.
-// kept as a float, its rest is off by another 2^-24 of 16u: within kRests.
+// Kept as a float, its rest is off by another 2^-24 of 16u: within kRests.
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 

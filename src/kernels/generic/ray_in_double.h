@@ -10,8 +10,8 @@ struct RayInDouble {
 
 /// The range of a query as parameters.
 struct Reach {
-  double outside;  ///< a box that is certainly entered beyond it is none
-  double inside;   ///< one that is certainly entered up to it is in range
+  double inside;   ///< a box that is certainly entered up to it is in range
+  double outside;  ///< one that is certainly entered beyond it is none
 };
 
 /// Lanes whose sign is set where the number is 0 or of a size from `least` to `most`.
@@ -58,6 +58,6 @@ static inline Double4 isBetween(Double4 size, double least, double most) {
   store4(d, directionOf(query));
   const double t = query.max_range / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
   // 1 - x is below 1 / (1 + x), and sooner there.
-  return {t * exact::bounds::kInflate + exact::bounds::kUnderflow,
-          t * (2.0 - exact::bounds::kInflate) - exact::bounds::kUnderflow};
+  return {t * (2.0 - exact::bounds::kInflate) - exact::bounds::kUnderflow,
+          t * exact::bounds::kInflate + exact::bounds::kUnderflow};
 }

@@ -15,6 +15,7 @@ template <typename Visit>
 static bool descend(const SceneView& view, int level, const std::uint32_t* nodes, int count,
                     FloatRay& ray, Visit& visit);
 
+/// The same, in the function of its caller: only where a list overflows another is called.
 template <typename Visit>
 [[gnu::always_inline]] static inline bool descendHere(const SceneView& view, int level,
                                                       const std::uint32_t* nodes, int count,
