@@ -69,6 +69,70 @@ static inline TwoVectors along(const BoxFrame& frame, const TwoVectors& vectors)
   });
 }
 
+/// The squared distance f + 2 g s + A s^2 at t + s, as long as no side changes: of one segment, or
+/// of each lane.
+template <typename Lanes>
+struct SquaredDistance {
+  Wide<Lanes> f;
+  Wide<Lanes> g;
+  Lanes curvature;    ///< A
+  Lanes root;         ///< of f
+  Lanes steepness;    ///< the root of A
+  Lanes slope_error;  ///< of g
+
+  template <typename All>
+  SquaredDistance(const Wide<Lanes>& f_, const Wide<Lanes>& g_, const Lanes& curvature_,
+                  const Lanes& eta, const All& all)
+      : f(f_),
+        g(g_),
+        curvature(curvature_),
+        root(squareRoot(f.hi)),
+        steepness(squareRoot(curvature)),
+        slope_error(all(4.0) * eta * (steepness + root)) {}
+};
+
+/// Where it is lowest, and how low.
+template <typename Lanes>
+struct Lowest {
+  Lanes change;  ///< from t
+  Wide<Lanes> t;
+  Lanes t_error;
+  Wide<Lanes> distance;
+  Lanes distance_error;
+};
+
+/// @param inverse of the curvature, or 0 where it is lowest at t: an end
+/// @param all all(x): x in all lanes
+template <typename Lanes, typename All>
+[[gnu::always_inline]] static inline Lowest<Lanes> lowestOf(const SquaredDistance<Lanes>& squared,
+                                                            const Lanes& inverse, const Lanes& t,
+                                                            const Lanes& eta, const All& all) {
+  // t* = t - g / A.
+  Lowest<Lanes> lowest;
+  const Lanes change = negated(squared.g.hi * inverse);
+  const Lanes curvature_error =
+      fused(all(4.0) * eta * squared.steepness, inverse, all(16.0 * exact::bounds::kUnit));
+  lowest.change = change;
+  lowest.t = twoSum(t, change);
+  lowest.t_error = squared.slope_error * inverse + magnitude(change) * curvature_error;
+
+  // f(t*) = f - g^2 / A, and its root from that of f: by r = (f(t*) - root^2) / (2 root) and
+  // - r^2 / (2 root), off by r^3 / (2 root^2) and more.
+  const Wide<Lanes>& f = squared.f;
+  const Lanes& root = squared.root;
+  const Lanes factor = all(0.5) / root;
+  const Lanes fall = change * change * squared.curvature;
+  const Wide<Lanes> square = twoProduct(root, root);
+  const Lanes rest = ((f.hi - square.hi) + ((f.lo - square.lo) - fall)) * factor;
+  const Lanes bend = rest * rest * factor;
+  lowest.distance = fastTwoSum(root, rest - bend);
+  lowest.distance_error =
+      (all(6.0) * eta + all(8.0) * curvature_error * (fall * factor)) +
+      (all(2.0 * exact::bounds::kOperation) * root +
+       magnitude(rest) * (all(8.0 * exact::bounds::kUnit) + all(4.0) * (bend * factor)));
+  return lowest;
+}
+
 /// @return whether the box is taken, and its sides are certain
 [[gnu::always_inline]] static inline bool refineIn(const BoxFrame& frame, Double4 center,
                                                    Double4 extents, Double4 start, Double4 end,
@@ -99,48 +163,28 @@ static inline TwoVectors along(const BoxFrame& frame, const TwoVectors& vectors)
   const auto [f, g] = ofBoth(TwoVectors{excess, v}, [&](const auto& a) {
     return wideSumOf3(product(a, repeated(excess, a)));
   });
-  const Double4 curvature = sumOf3(v.hi * v.hi);
-  const Double4 root = squareRoot(f.hi);
-  const Double4 steepness = squareRoot(curvature);
-  const Double4 slope_error = all4(4.0) * eta * (steepness + root);
+  const auto all = [](double x) { return all4(x); };
+  const SquaredDistance<Double4> squared(f, g, sumOf3(v.hi * v.hi), eta, all);
 
-  // t* = t - g / A, or one of the ends.
   const double slope = firstLane(g.hi);
-  const double slope_slack = firstLane(slope_error);
+  const double slope_slack = firstLane(squared.slope_error);
   const bool at_start = at == 0.0 && (slope > slope_slack || firstLane(sumOf3(length)) == 0.0);
   const bool at_end = at == 1.0 && -slope > slope_slack;
   const bool is_inside = !at_start && !at_end;
-  const Double4 inside = all4(is_inside ? 1.0 : 0.0);
-  const Double4 inverse = orZeroWhereZero(all4(1.0) / curvature, inside);
-  const Double4 change = negated(g.hi * inverse);
-  const Double4 curvature_error =
-      fused(all4(4.0) * eta * steepness, inverse, all4(16.0 * exact::bounds::kUnit));
-  const Double4 t_error = slope_error * inverse + magnitude(change) * curvature_error;
-  const Wide4 nearest = twoSum(t, change);
+  const Double4 inverse =
+      orZeroWhereZero(all4(1.0) / squared.curvature, all4(is_inside ? 1.0 : 0.0));
+  const Lowest<Double4> lowest = lowestOf(squared, inverse, t, eta, all);
 
-  // f(t*) = f - g^2 / A, and its root from that of f: by r = (f(t*) - root^2) / (2 root) and
-  // - r^2 / (2 root), off by r^3 / (2 root^2) and more.
-  const Double4 factor = all4(0.5) / root;
-  const Double4 fall = change * change * curvature;
-  const Wide4 square = twoProduct(root, root);
-  const Double4 rest = ((f.hi - square.hi) + ((f.lo - square.lo) - fall)) * factor;
-  const Double4 bend = rest * rest * factor;
-  const Wide4 distance = fastTwoSum(root, rest - bend);
-  const Double4 distance_error =
-      (all4(6.0) * eta + all4(8.0) * curvature_error * (fall * factor)) +
-      (all4(2.0 * exact::bounds::kOperation) * root +
-       magnitude(rest) * (all4(8.0 * exact::bounds::kUnit) + all4(4.0) * (bend * factor)));
-
-  const Double4 margin = all4(2.0) * (magnitude(change) * magnitude(direction.hi)) +
+  const Double4 margin = all4(2.0) * (magnitude(lowest.change) * magnitude(direction.hi)) +
                          (all4(8.0) * eta + all4(16.0 * exact::bounds::kUnit) * scale);
   const double size = firstLane(scale);
   refined.inside = is_inside;
-  refined.t[0] = firstLane(nearest.hi);
-  refined.t[1] = firstLane(nearest.lo);
-  refined.t_error = firstLane(t_error);
-  refined.distance[0] = firstLane(distance.hi);
-  refined.distance[1] = firstLane(distance.lo);
-  refined.distance_error = firstLane(distance_error);
+  refined.t[0] = firstLane(lowest.t.hi);
+  refined.t[1] = firstLane(lowest.t.lo);
+  refined.t_error = firstLane(lowest.t_error);
+  refined.distance[0] = firstLane(lowest.distance.hi);
+  refined.distance[1] = firstLane(lowest.distance.lo);
+  refined.distance_error = firstLane(lowest.distance_error);
   return notBelow3(magnitude(room), margin) == 7U && size >= exact::bounds::kSmallestScale &&
          size <= exact::bounds::kLargestScale;
 }

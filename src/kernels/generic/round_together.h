@@ -137,46 +137,28 @@ static std::uint32_t roundTogether(const SceneView& view, const RoundQueries& qu
     slopes[i] = product(v[i], excess[i]);
     curvatures[i] = v[i].hi * v[i].hi;
   }
-  const W f = sumOf3(squares);
-  const W g = sumOf3(slopes);
-  const Double8 curvature = sumOf3(curvatures);
-  const Double8 root = squareRoot(f.hi);
-  const Double8 steepness = squareRoot(curvature);
-  const Double8 slope_error = all8(4.0) * eta * (steepness + root);
+  const auto all = [](double x) { return all8(x); };
+  const SquaredDistance<Double8> squared(sumOf3(squares), sumOf3(slopes), sumOf3(curvatures), eta,
+                                         all);
 
-  // t* = t - g / A, or one of the ends.
-  const Mask8 at_start = (t == zero) & ((g.hi > slope_error) | (sumOf3(lengths) == zero));
-  const Mask8 at_end = (t == one) & (negated(g.hi) > slope_error);
+  const Double8& slope = squared.g.hi;
+  const Mask8 at_start = (t == zero) & ((slope > squared.slope_error) | (sumOf3(lengths) == zero));
+  const Mask8 at_end = (t == one) & (negated(slope) > squared.slope_error);
   const Mask8 at_an_end = at_start | at_end;
-  const Double8 inverse = zeroWhere(at_an_end, one / curvature);
-  const Double8 change = negated(g.hi * inverse);
-  const Double8 curvature_error =
-      fused(all8(4.0) * eta * steepness, inverse, all8(16.0 * exact::bounds::kUnit));
-  const Double8 t_error = slope_error * inverse + magnitude(change) * curvature_error;
-  const W nearest = twoSum(t, change);
-
-  // f(t*) = f - g^2 / A, and its root from that of f.
-  const Double8 factor = all8(0.5) / root;
-  const Double8 fall = change * change * curvature;
-  const W square = twoProduct(root, root);
-  const Double8 rest = ((f.hi - square.hi) + ((f.lo - square.lo) - fall)) * factor;
-  const Double8 bend = rest * rest * factor;
-  const W distance = fastTwoSum(root, rest - bend);
-  const Double8 distance_error =
-      (all8(6.0) * eta + all8(8.0) * curvature_error * (fall * factor)) +
-      (all8(2.0 * exact::bounds::kOperation) * root +
-       magnitude(rest) * (all8(8.0 * exact::bounds::kUnit) + all8(4.0) * (bend * factor)));
+  const Double8 inverse = zeroWhere(at_an_end, one / squared.curvature);
+  const Lowest<Double8> lowest = lowestOf(squared, inverse, t, eta, all);
 
   Double8 rounded_t;
   Double8 rounded_distance;
-  Mask8 certain = isRounded(nearest, t_error, rounded_t) &
-                  isRounded(distance, distance_error, rounded_distance) & boxes.oriented;
+  Mask8 certain = isRounded(lowest.t, lowest.t_error, rounded_t) &
+                  isRounded(lowest.distance, lowest.distance_error, rounded_distance) &
+                  boxes.oriented;
   certain = certain & (at_an_end | ((rounded_t > zero) & (one > rounded_t)));
   certain = certain & (scale > all8(exact::bounds::kSmallestScale)) &
             (all8(exact::bounds::kLargestScale) > scale);
   const Double8 slack = all8(8.0) * eta + all8(16.0 * exact::bounds::kUnit) * scale;
   for (int i = 0; i < 3; ++i) {
-    const Double8 margin = all8(2.0) * (magnitude(change) * drift[i]) + slack;
+    const Double8 margin = all8(2.0) * (magnitude(lowest.change) * drift[i]) + slack;
     certain = certain & (magnitude(room[i]) > margin);
   }
   store8(rounded.t, rounded_t);
