@@ -36,6 +36,7 @@ namespace avx2 {
 #include "kernels/generic/box_times.h"
 #include "kernels/generic/blocks.h"
 #include "kernels/generic/short_trees.h"
+#include "kernels/generic/search_blocks.h"
 #include "kernels/generic/traverse.h"
 #include "kernels/generic/ray_queries.h"
 #include "kernels/generic/together.h"
@@ -57,6 +58,7 @@ namespace avx2 {
 }  // namespace avx2
 
 const Kernels kAvx2 = {"avx2",
+                       avx2::prefersBlocks,
                        avx2::closest,
                        avx2::any,
                        avx2::closestTogether,

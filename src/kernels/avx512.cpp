@@ -37,6 +37,7 @@ namespace avx512 {
 #include "kernels/generic/box_times.h"
 #include "kernels/generic/blocks.h"
 #include "kernels/generic/short_trees.h"
+#include "kernels/generic/search_blocks.h"
 #include "kernels/generic/traverse.h"
 #include "kernels/generic/ray_queries.h"
 #include "kernels/generic/together.h"
@@ -58,6 +59,7 @@ namespace avx512 {
 }  // namespace avx512
 
 const Kernels kAvx512 = {"avx512",
+                         avx512::prefersBlocks,
                          avx512::closest,
                          avx512::any,
                          avx512::closestTogether,

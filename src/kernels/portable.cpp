@@ -21,6 +21,7 @@ namespace portable {
 #include "kernels/generic/box_times.h"
 #include "kernels/generic/blocks.h"
 #include "kernels/generic/short_trees.h"
+#include "kernels/generic/search_blocks.h"
 #include "kernels/generic/traverse.h"
 #include "kernels/generic/ray_queries.h"
 #include "kernels/generic/together.h"
@@ -33,6 +34,7 @@ namespace portable {
 }  // namespace portable
 
 const Kernels kPortable = {"portable",
+                           portable::prefersBlocks,
                            portable::closest,
                            portable::any,
                            portable::closestTogether,

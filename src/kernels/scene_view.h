@@ -42,7 +42,7 @@ struct alignas(16) AxisRests {
   float column[3][4];
 };
 
-/// Sixteen boxes of a short list in float, relative to the center of the scene, all as oriented
+/// Sixteen boxes in float, relative to the center of the scene, all as oriented
 /// ones. An empty slot has extents of -inf.
 struct alignas(64) BoxBlock {
   float axis[3][3][kSlots];  ///< [axis of the box][coordinate][slot]
@@ -50,6 +50,12 @@ struct alignas(64) BoxBlock {
   float extent[3][kSlots];   ///< half extents, padded: see generic/blocks.h
   float certain[3][kSlots];  ///< and those of what is certainly in the box
 };
+
+/// So many are in blocks at most.
+constexpr std::uint32_t kMostInBlocks = 1024;
+
+/// Of boxes, met by a ray through all of a scene, where the scene is a heap.
+constexpr double kManyBounds = 8.0;
 
 /// Center and half extents of a box in a block: at most this far away.
 constexpr double kFarthestInBlocks = 0x1p40;
@@ -62,13 +68,6 @@ struct alignas(64) LeafBoxes {
   float extent[3][kSlots];  ///< half extents
   float error[kSlots];      ///< what it adds to that of a distance: see generic/leaf_distances.h
 };
-
-/// How many of the bounds a ray through all of a scene meets: fewer than one, some, or many.
-enum class Density { kScattered, kCrowded, kHeaped };
-
-/// How many boxes are in blocks at most, of each Density: as many as some kernel compares so.
-constexpr std::uint32_t kMostInBlocks[] = {32, 64, 192};
-constexpr int kBlockWords = 192 / 64;  ///< with a bit for each
 
 /// Nodes of one level: the children of node n are first[n], first[n] + 1, ... of the level below,
 /// of the lowest level records.
@@ -84,11 +83,11 @@ struct SceneView {
   int depth;  ///< how many levels there are; 0: no box is in the tree
   /// The same for many segments: where there are several roots there is one more, around them.
   int depth_together;
-  /// Of a list that is so short that its boxes are compared at once: slot i % kSlots of block
-  /// i / kSlots is record i. None in blocks: it is not.
+  /// Where a ray is sooner compared with all boxes than with their bounds: slot i % kSlots of block
+  /// i / kSlots is record i. Or else none are in blocks.
   const BoxBlock* blocks;
   std::uint32_t boxes_in_blocks;
-  Density density;
+  bool is_heap;  ///< a ray through all of it meets the bounds of many boxes
   /// Of a tree of two levels: most rays meet no leaf, even if they go through all of the scene.
   bool meets_few_leaves;
   /// Slot n is around all of root n.

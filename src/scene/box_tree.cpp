@@ -74,7 +74,7 @@ BoxTree::BoxTree(const SceneBoxes& boxes) {
   built_records_ = records_.size();
   measure();
   built_cost_ = cost_;
-  if (records_.size() <= kernels::kMostInBlocks[static_cast<int>(density_)]) {
+  if (kernels::active().prefers_blocks(records_.size(), bounds_met_)) {
     blocks_ = blocksOf(records_, center_);
   }
 }
@@ -140,10 +140,7 @@ void BoxTree::measure() {
   // A ray meets a convex body of surface S as often as a disc of S / 4 (Cauchy).
   const double free = 4.0 * volume / area;
   mean_free_path_ = std::min(std::max(free, longest / 64.0), 2.0 * longest);
-  constexpr double kMany = 8.0;
-  density_ = free * kMany < longest ? kernels::Density::kHeaped
-             : free < longest       ? kernels::Density::kCrowded
-                                    : kernels::Density::kScattered;
+  bounds_met_ = longest / free;
 
   cost_ = 0.0;
   for (std::size_t level = 1; level < levels_.size(); ++level) {
@@ -187,7 +184,7 @@ kernels::SceneView BoxTree::view() const {
   namespace bounds = kernels::bounds;
   view.apart = static_cast<float>((reach * bounds::kApart + bounds::kFloatUnderflow) *
                                   (bounds::kUp * bounds::kUp));
-  view.density = density_;
+  view.is_heap = bounds_met_ > kernels::kManyBounds;
   constexpr double kFew = 1.8;  // measured
   view.meets_few_leaves = levels_.size() == 2 && cost_ < kFew;
   view.has_aligned = has_aligned_;

@@ -32,7 +32,7 @@ struct BoxChanges {
 };
 
 /// A tree of sixteen children a node, all leaves at the same depth; up to 128 boxes are one list.
-/// Few boxes, and up to 192 in a heap, are kept in blocks too.
+/// Few boxes, and some hundreds in a heap, are kept in blocks too.
 class BoxTree {
  public:
   BoxTree() = default;
@@ -71,7 +71,7 @@ class BoxTree {
   double around_[2][3] = {};
   bool has_aligned_ = false;
   double mean_free_path_ = 0.0;
-  kernels::Density density_ = kernels::Density::kScattered;
+  double bounds_met_ = 0.0;  ///< by a ray through all of it
   /// Areas of the nodes over that of the whole: what a ray has to compare.
   double cost_ = 0.0;
 

@@ -174,7 +174,7 @@ TEST_P(KernelTest, MissNothingAtAnyDepth) {
 
 TEST_P(KernelTest, MissNothingInHeaps) {
   // Where some kernels compare boxes themselves: to the last in a word, a block, and beyond.
-  for (const std::size_t count : {33, 48, 49, 64, 65, 127, 128, 129, 191, 192, 193}) {
+  for (const std::size_t count : {33, 48, 49, 64, 65, 127, 128, 129, 320, 1023, 1024, 1025}) {
     Random random(28, count, 0);
     for (const double spacing : {0.3, 3.0}) {
       const std::vector<Box> boxes = scattered(random, count, spacing);

@@ -151,8 +151,7 @@ std::vector<Box> boxesWithin(Sampler& sampler, std::size_t count, double spread,
   return boxes;
 }
 
-/// So many in a heap that the kernels compare them themselves (Density::kHeaped) though they make
-/// more than a list.
+/// So many in a heap that the kernels compare them themselves though they make more than a list.
 TEST(SceneUpdate, HeapedBoxesAreWhereTheyMovedTo) {
   Sampler sampler(8);
   Scene scene(boxesWithin(sampler, 160, 6.0, 1.0, 3.0));

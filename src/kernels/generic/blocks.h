@@ -77,6 +77,7 @@ struct BlockRay {
 template <typename Lanes>
 struct BlockTimes {
   Lanes near;  ///< where it enters them, not too late
+  Lanes far;   ///< and leaves them, or ends, not too soon
   Lanes middle[3];
   Lanes inverse[3];
 };
@@ -113,8 +114,8 @@ template <typename Lanes>
   }
   // The end of the ray is the last that is known: a root and a quotient.
   times.near = larger(larger(nears[0], nears[1]), larger(nears[2], allLanes<Lanes>(0.0F)));
-  const Lanes far = smaller(smaller(smaller(fars[0], fars[1]), fars[2]), allLanes<Lanes>(ray.end));
-  return notAbove(times.near, far);
+  times.far = smaller(smaller(smaller(fars[0], fars[1]), fars[2]), allLanes<Lanes>(ray.end));
+  return notAbove(times.near, times.far);
 }
 
 /// Where a ray certainly is in boxes: from `enter`, not too soon, to `exit`, if that is not before.
@@ -136,5 +137,10 @@ struct CertainTimes {
     }
     enter = larger(larger(nears[0], nears[1]), larger(nears[2], allLanes<Lanes>(0.0F)));
     exit = smaller(smaller(fars[0], fars[1]), fars[2]);
+  }
+
+  /// Whether it certainly enters one of them up to a parameter.
+  [[gnu::always_inline]] bool isMetBefore(float end) const {
+    return notAbove(enter, smaller(exit, allLanes<Lanes>(end))) != 0;
   }
 };

@@ -278,6 +278,8 @@ static inline Double8 zeroWhere(const Mask8& m, const Double8& a) {
 static inline Double8 either(const Mask8& m, const Double8& a, const Double8& b) {
   return {{_mm256_blendv_pd(b.v[0], a.v[0], m.v[0]), _mm256_blendv_pd(b.v[1], a.v[1], m.v[1])}};
 }
-/// How many boxes are sooner compared themselves than by their bounds, of each Density: at most
-/// kMostInBlocks.
-constexpr std::uint32_t kInBlocks[] = {16, 48, 48};
+/// See Kernels. (Measured.)
+static bool prefersBlocks(std::size_t boxes, double bounds_met) {
+  return boxes <= 16 || (boxes <= 48 && bounds_met > 1.0) ||
+         (boxes <= kMostInBlocks && static_cast<double>(boxes) < 2.2 * bounds_met);
+}

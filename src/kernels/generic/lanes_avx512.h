@@ -277,6 +277,9 @@ static inline Double8 zeroWhere(Mask8 m, Double8 a) {
 static inline Double8 either(Mask8 m, Double8 a, Double8 b) {
   return {_mm512_mask_mov_pd(b.v, m.bits, a.v)};
 }
-/// How many boxes are sooner compared themselves than by their bounds, of each Density: at most
-/// kMostInBlocks.
-constexpr std::uint32_t kInBlocks[] = {32, 64, 192};
+/// See Kernels. (Measured.)
+static bool prefersBlocks(std::size_t boxes, double bounds_met) {
+  return boxes <= 32 || (boxes <= 64 && bounds_met > 1.0) ||
+         (boxes <= kMostInBlocks && bounds_met > kManyBounds &&
+          (boxes <= 192 || static_cast<double>(boxes) < 8.0 * bounds_met));
+}

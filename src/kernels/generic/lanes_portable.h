@@ -389,6 +389,7 @@ static inline void loadRays(const double* rays, const Double4& center, Float16* 
 
 /// What boxes of a block are compared in, where there are more than eight.
 using BlockLanes = Float8;
-/// How many boxes are sooner compared themselves than by their bounds, of each Density: at most
-/// kMostInBlocks.
-constexpr std::uint32_t kInBlocks[] = {16, 48, 48};
+/// See Kernels. (Measured.)
+static bool prefersBlocks(std::size_t boxes, double bounds_met) {
+  return boxes <= 16 || (boxes <= 48 && bounds_met > 1.0);
+}

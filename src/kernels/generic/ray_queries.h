@@ -279,16 +279,10 @@ template <typename Visit>
   return visit.answer();
 }
 
-/// Whether a ray is compared with the boxes of a scene themselves.
-static inline bool areInBlocks(const SceneView& view) {
-  return view.boxes_in_blocks > 0 &&
-         view.boxes_in_blocks <= kInBlocks[static_cast<int>(view.density)];
-}
-
 /// (Each with little of its own, so that most rays among few boxes need no more.)
 template <typename Visit>
 static Answer search(const SceneView& view, const RayQuery& query, Found& found) {
-  if (areInBlocks(view)) {
+  if (view.boxes_in_blocks > 0) {
     BlockRay ray;
     if (prepare(view, query, ray)) {
       return searchBlocks<Visit>(view, query, found, ray);

@@ -169,7 +169,7 @@ static void searchInLanes(const SceneView& view, const RayQueries& queries, cons
 template <typename What>
 static void askTogether(const SceneView& view, const RayQueries& queries, const Delivery& to) {
   // (In a heap a ray meets the bounds of most boxes, and few of the boxes.)
-  const bool is_heap = view.density == Density::kHeaped && areInBlocks(view);
+  const bool is_heap = view.is_heap && view.boxes_in_blocks > 0;
   if (view.depth == 1 && !is_heap) {
     searchListTogether<What>(view, queries, to);
   } else if (view.depth > 1 && !is_heap && view.levels[0].nodes <= kLargestNumber / kSlots) {
