@@ -8,10 +8,20 @@
 #include <visualization_msgs/MarkerArray.h>
 
 namespace box_query {
+namespace {
+
+/// Messages that wait for a subscriber, beside that which is being sent to it. Of 100,000 boxes
+/// one has 144 MB, and whoever does not read makes the node keep all of them.
+constexpr std::uint32_t kQueue = 1;
+
+/// [s] after which boxes are said again where queries may have taken their place in the queue.
+constexpr double kSaidAgain = 5.0;
+
+}  // namespace
 
 Markers::Markers(ros::NodeHandle& private_nh, SceneMonitor& monitor) : monitor_(monitor) {
   auto options = ros::AdvertiseOptions::create<visualization_msgs::MarkerArray>(
-      "markers", 10,
+      "markers", kQueue,
       [this](const ros::SingleSubscriberPublisher& subscriber) { welcome(subscriber); },
       ros::SubscriberStatusCallback(), ros::VoidConstPtr(), &queue_);
   publisher_ = private_nh.advertise(options);
@@ -59,7 +69,7 @@ void Markers::run() {
 }
 
 Markers::Shown Markers::look() const {
-  Shown look{monitor_.watchedScene(), ros::Time::now(), {}, {}};
+  Shown look{monitor_.watchedScene(), ros::Time::now(), ros::WallTime::now(), {}, {}};
   look.status = statusText(*look.scene, look.time);
   return look;
 }
@@ -70,11 +80,9 @@ bool Markers::Shown::looksLike(const Shown& other) const {
          scene->outdated == other.scene->outdated && status == other.status;
 }
 
-std::vector<visualization_msgs::Marker> Markers::draw(Shown& look) const {
+std::vector<visualization_msgs::Marker> Markers::draw(const Shown& look) const {
   const auto labels = static_cast<std::size_t>(monitor_.parameters().max_marker_labels);
-  auto markers = boxMarkers(*look.scene, look.time, labels);
-  look.names = namesOf(markers);
-  return markers;
+  return boxMarkers(*look.scene, look.time, labels);
 }
 
 void Markers::welcome(const ros::SingleSubscriberPublisher& subscriber) {
@@ -85,6 +93,7 @@ void Markers::welcome(const ros::SingleSubscriberPublisher& subscriber) {
     subscriber.publish(array);
   }
   if (publisher_.getNumSubscribers() == 1) {
+    now.names = namesOf(array.markers);
     shown_ = std::move(now);
   }
 }
@@ -92,12 +101,15 @@ void Markers::welcome(const ros::SingleSubscriberPublisher& subscriber) {
 void Markers::publish() {
   visualization_msgs::MarkerArray array;
   Shown now = look();
-  if (!shown_ || !now.looksLike(*shown_)) {
+  const bool says_boxes = !shown_ || !now.looksLike(*shown_) ||
+                          (shown_->is_overtaken && (now.said - shown_->said).toSec() >= kSaidAgain);
+  if (says_boxes) {
     array.markers = draw(now);
     if (shown_) {
       const auto deleted = deletions(shown_->names, array.markers, now.scene->frame);
       array.markers.insert(array.markers.end(), deleted.begin(), deleted.end());
     }
+    now.names = namesOf(array.markers);
     shown_ = std::move(now);
   }
   std::vector<DrawnQuery> queries;
@@ -107,7 +119,10 @@ void Markers::publish() {
   }
   const auto drawn = queryMarkers(queries, monitor_.parameters().fixed_frame,
                                   monitor_.parameters().marker_lifetime, last_id_);
-  last_id_ += drawn.empty() ? 0 : 1;
+  if (!drawn.empty()) {
+    ++last_id_;
+    shown_->is_overtaken |= !says_boxes;
+  }
   array.markers.insert(array.markers.end(), drawn.begin(), drawn.end());
   if (!array.markers.empty()) {
     publisher_.publish(array);

@@ -22,7 +22,8 @@
 namespace box_query {
 
 /// Publishes markers from a thread of its own, only while somebody subscribes: the boxes whenever
-/// they have changed, and at once to a new subscriber; the queries since the last time.
+/// they have changed, and at once to a new subscriber; the queries since the last time. Whoever
+/// reads slowly misses messages, and sees the right boxes again with the latest that has some.
 class Markers {
  public:
   Markers(ros::NodeHandle& private_nh, SceneMonitor& monitor);
@@ -43,13 +44,15 @@ class Markers {
 
     SnapshotPtr scene;
     ros::Time time;
+    ros::WallTime said;
     std::string status;
-    std::vector<MarkerName> names;
+    std::vector<MarkerName> names;  ///< also of those that were taken away: that may be missed
+    bool is_overtaken = false;      ///< whether queries have been said after it
   };
 
   void run();
   Shown look() const;
-  std::vector<visualization_msgs::Marker> draw(Shown& look) const;
+  std::vector<visualization_msgs::Marker> draw(const Shown& look) const;
   void welcome(const ros::SingleSubscriberPublisher& subscriber);
   void publish();
 

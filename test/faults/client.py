@@ -8,7 +8,6 @@
 The latter two print a line when they have begun, and stay until they are killed.
 """
 import io
-import socket
 import struct
 import sys
 import time
@@ -17,6 +16,8 @@ import rosgraph
 import rospy
 from box_query.srv import CastRays, CastRaysRequest
 from geometry_msgs.msg import Point, Vector3
+
+from connection import connect
 
 SERVICE = '/box_query/cast_rays'
 
@@ -37,23 +38,12 @@ def batch():
         print('the connection was closed')
 
 
-def connect():
-    """A socket on which the service has said that it is the one."""
-    host, port = rosgraph.Master('/client').lookupService(SERVICE)[len('rosrpc://'):].split(':')
-    one = socket.create_connection((host, int(port)))
-    fields = ('service=' + SERVICE, 'md5sum=' + CastRays._md5sum, 'callerid=/client')
-    header = b''.join(struct.pack('<I', len(field)) + field.encode() for field in fields)
-    one.sendall(struct.pack('<I', len(header)) + header)
-    if not one.recv(4):
-        sys.exit('refused')
-    return one
-
-
 def main():
     role = sys.argv[1]
     if role == 'batch':
         return batch()
-    one = connect()
+    host, port = rosgraph.Master('/client').lookupService(SERVICE)[len('rosrpc://'):].split(':')
+    one = connect(host, int(port), service=SERVICE, md5sum=CastRays._md5sum)
     body = io.BytesIO()
     request(100000).serialize(body)
     body = body.getvalue()

@@ -5,6 +5,7 @@ import time
 from box_query.srv import CastRays, CastRaysRequest
 from geometry_msgs.msg import Point, Vector3
 
+from connection import Viewer
 from world import check
 
 
@@ -116,6 +117,33 @@ def fault_clients_that_send_half(world, report):
 def fault_clients_that_do_not_read(world, report):
     """Clients ask for megabytes and do not read them; then they are killed."""
     clients(world, report, 'deaf', 4)
+
+
+def fault_viewer_that_does_not_read(world, report):
+    """What shows ~markers hangs while 10,000 boxes move, and while rays are cast after that; then it reads on."""
+    world.start_node(box_topics=['boxes', 'late'], max_kept_boxes=10000)
+    few = world.speak('boxes', 'boxes', 'Marker', 'map', 4, 1)
+    world.until(lambda: world.answers(4, 1, complete=False), 'boxes')
+    few.end()
+    viewer = Viewer()
+    viewer.read()
+    check(('status', 0) in viewer.shown, 'it is not said that a topic is not heard:', viewer.shown)
+    report.begin()
+    report.most = 150.0  # two messages of 14 MB, one that is made, and what the boxes take
+    many = world.speak('many', 'boxes', 10000, 'map', 'moves')
+    time.sleep(2.0)
+    world.speak('boxes', 'late', 'Marker', 'map', 9, 1)
+    time.sleep(2.0)
+    many.end()
+    few = world.speak('boxes', 'boxes', 'Marker', 'map', 4, 1, 2, 3)
+    report.right_again(few.since, 4, 4, 'its successor spoke')
+    end = time.monotonic() + 2.0
+    while time.monotonic() < end:
+        check(world.answers(4, None), 'no answer')
+    since = time.monotonic()
+    while viewer.shown.get(('boxes//boxes', 0)) != 3 * 36 or ('status', 0) in viewer.shown:
+        viewer.read()
+    print('  shown again %.2f s after it read on' % (time.monotonic() - since))
 
 
 def fault_client_vanishes_during_its_batch(world, report):

@@ -3,8 +3,8 @@
 """A process that publishes until it is killed. It prints the monotonic time of its first message.
 
   boxes TOPIC TYPE FRAME X ID...   unit cubes at X, as a MarkerArray, one Marker (a CUBE_LIST) or, of no box, a String
-  many TOPIC COUNT FRAME HOW       as one CUBE_LIST: with another id each time (flood), once (once), or turned so
-                                   that rays along them look at each (row)
+  many TOPIC COUNT FRAME HOW       as one CUBE_LIST: with another id (flood) or elsewhere (moves) each time, once (once),
+                                   or turned so that rays along them look at each (row)
   torrent TOPIC COUNT FRAME        as a MarkerArray, the same again and again as fast as it can
   tf PARENT CHILD X                where CHILD is, now
   clock SECONDS                    /clock from then on, as fast as the wall's
@@ -63,12 +63,13 @@ def many(topic, count, frame, how):
     # Before the points: all but two empty arrays, two empty strings and a flag.
     head, tail = empty.getvalue()[:-17], empty.getvalue()[-13:]
     points = b''.join(struct.pack('<3d', start + step * i, 0, 0) for i in range(int(count)))
-    number = head.index(b'cubes') + len(b'cubes')
-    numbers = itertools.count(1)
+    number = head.index(b'cubes') + len(b'cubes')  # the id; a type and an action are before the position
+    at, form = (number + 12, '<d') if how == 'moves' else (number, '<i')
+    numbers = itertools.count(1) if how in ('flood', 'moves') else itertools.repeat(0)
 
     class Many(Marker):
         def serialize(self, buffer):
-            buffer.write(head[:number] + struct.pack('<i', next(numbers) if how == 'flood' else 0) + head[number + 4:])
+            buffer.write(head[:at] + struct.pack(form, next(numbers)) + head[at + struct.calcsize(form):])
             buffer.write(struct.pack('<I', int(count)) + points + tail)
 
     return topic, Many, Many
