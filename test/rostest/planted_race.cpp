@@ -16,6 +16,7 @@
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
 #include <std_msgs/Empty.h>
+#include <tbb/global_control.h>
 
 namespace {
 
@@ -82,6 +83,8 @@ int countInCallback(Boxes& boxes) {
 
 /// Two threads of a batch, each once.
 int countInBatch(Boxes& boxes) {
+  using Limit = tbb::global_control;
+  const Limit limit(Limit::max_allowed_parallelism, 2);  // even on one core
   Arrivals threads;
   std::atomic<int> alone{0};
   box_query::forEachPart(100000, 2, [&](std::size_t /*begin*/, std::size_t /*end*/) {
