@@ -51,8 +51,15 @@ class NearestList {
     count_ = kept;
   }
 
-  /// After tidy(), whether one is the nearest, certainly, and is not met.
-  bool isOne() const { return count_ == 1 && lower_ > 0.0F && !is_full_; }
+  /// Whether one is the nearest, certainly, and is not met.
+  bool isOne() const {
+    int near = 0;
+    for (int i = 0; i < count_; i += kSlots) {
+      const std::uint32_t listed = count_ - i < kSlots ? (1U << (count_ - i)) - 1 : kAllSlots;
+      near += __builtin_popcount(notAbove(load16(nears_ + i), all16(bound_)) & listed);
+    }
+    return near == 1 && lower_ > 0.0F && !is_full_;
+  }
   std::uint32_t best() const { return best_; }
   float t() const { return t_; }
   bool isFull() const { return is_full_; }
@@ -62,6 +69,7 @@ class NearestList {
 
  private:
   static constexpr int kCapacity = 64;
+  static constexpr std::uint32_t kAllSlots = (1U << kSlots) - 1;
   static constexpr float kNoBound = std::numeric_limits<float>::max();
 
   float bound_;
@@ -199,11 +207,11 @@ class NearestOneSearch {
 [[gnu::always_inline]] static inline bool decide(const SceneView& view, const SegmentQuery& query,
                                                  NearestList& list, Approach approach,
                                                  void* context, NearestOne* one, Work& work) {
-  list.tidy();
   if (list.isOne() && one != nullptr) {
     *one = {list.best(), list.t()};
     return true;
   }
+  list.tidy();
   if (list.isFull()) {
     nearest(view, query, approach, context, work);
   } else {

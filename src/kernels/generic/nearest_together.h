@@ -156,16 +156,14 @@ class NearestTogether {
   /// At what was passed by on a level, and may be nearer than what was found since.
   void lookBack(int level) {
     alignas(64) std::uint32_t list[kListedNear + kSlots];
-    alignas(64) float nears[kListedNear + kSlots];
     int listed = 0;
     const std::uint32_t* first = view_.levels[level].first;
     for (std::uint32_t k = 0; k < static_cast<std::uint32_t>(count_); ++k) {
       const NearCompanion& c = segments_[k];
       const Float16 bound = all16(c.list.bound());
       const auto listNear = [&](std::uint32_t node, const float* waiting) {
-        const Float16 lower = load16(waiting);
-        listed = append(notAbove(lower, bound), first[node] | (k << kNumberBits), lower, list,
-                        nears, listed);
+        listed = append(notAbove(load16(waiting), bound), first[node] | (k << kNumberBits), list,
+                        listed);
       };
       if (level < top_ && c.lowest <= level) {
         listNear(c.node[level], c.below[level]);
@@ -174,30 +172,33 @@ class NearestTogether {
         listNear(static_cast<std::uint32_t>(n), c.roots + n * kSlots);
       }
     }
-    goOn(level, list, nears, listed);
+    goOn(level, list, listed);
   }
 
   /// Looks at children of a level.
-  void goOn(int level, const std::uint32_t* children, const float* nears, int count) {
+  void goOn(int level, const std::uint32_t* children, int count) {
     if (level > 1) {
-      descend(level - 1, children, nears, count);
+      descend(level - 1, children, count);
       return;
     }
+    // (Which are near nobody can foretell: without a branch on it.)
+    alignas(64) std::uint32_t near[kListedNear + kSlots];
+    int listed = 0;
     for (int i = 0; i < count; ++i) {
       if (i + 1 < count) {
         fetchNode(view_.levels[0].bounds[children[i + 1] & kLargestNumber]);
       }
-      NearCompanion& c = segments_[children[i] >> kNumberBits];
-      const std::uint32_t leaf = children[i] & kLargestNumber;
-      if (nears[i] <= c.list.bound() && mayBeNearer(c, leaf)) {
-        visit(c, leaf);
-      }
+      const NearCompanion& c = segments_[children[i] >> kNumberBits];
+      near[listed] = children[i];
+      listed += mayBeNearer(c, children[i] & kLargestNumber) ? 1 : 0;
+    }
+    for (int i = 0; i < listed; ++i) {
+      visit(segments_[near[i] >> kNumberBits], near[i] & kLargestNumber);
     }
   }
 
-  void descend(int level, const std::uint32_t* nodes, const float* nears, int count) {
+  void descend(int level, const std::uint32_t* nodes, int count) {
     alignas(64) std::uint32_t list[kListedTogether + kSlots];
-    alignas(64) float nears_below[kListedTogether + kSlots];
     int listed = 0;
     for (int i = 0; i < count; ++i) {
       if (i + 1 < count) {
@@ -205,21 +206,17 @@ class NearestTogether {
       }
       const std::uint32_t node = nodes[i] & kLargestNumber;
       const NearCompanion& c = segments_[nodes[i] >> kNumberBits];
-      if (!(nears[i] <= c.list.bound())) {
-        continue;
-      }
       ++work_.nodes;
       const Float16 lower = LaneSegment<0>(c.segment).distances(view_.levels[level].bounds[node]);
       listed = append(notAbove(lower, all16(c.list.bound())),
-                      view_.levels[level].first[node] | (nodes[i] & ~kLargestNumber), lower, list,
-                      nears_below, listed);
+                      view_.levels[level].first[node] | (nodes[i] & ~kLargestNumber), list, listed);
       if (listed > kListedTogether - kSlots) {
-        goOn(level, list, nears_below, listed);
+        goOn(level, list, listed);
         listed = 0;
       }
     }
     if (listed > 0) {
-      goOn(level, list, nears_below, listed);
+      goOn(level, list, listed);
     }
   }
 
