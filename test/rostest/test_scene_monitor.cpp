@@ -168,14 +168,14 @@ TEST_F(MonitorOfOneTopic, SharesTheSceneOfBoxesThatAreSentAgain) {
 TEST_F(MonitorOfOneTopic, RefitsWhereSomeOfManyBoxesMove) {
   start();
   std::vector<Marker> boxes;
-  for (int id = 0; id < 200; ++id) {
+  for (int id = 0; id < 2000; ++id) {
     boxes.push_back(cube("map", id, 2.0 * id));
   }
   say(boxes);
-  ASSERT_TRUE(hasBoxes(*monitor_, 200));
+  ASSERT_TRUE(hasBoxes(*monitor_, 2000));
   EXPECT_EQ(monitor_->statistics().refits, 0U);
   say({withAction(cube("map", 3, 0.0), Marker::DELETE), cube("map", 7, 14.5),
-       cube("map", 300, 9.0)});
+       cube("map", 3000, 9.0)});
   ASSERT_TRUE(eventually([&] { return monitor_->statistics().messages == 2; }));
   const SnapshotPtr after = monitor_->currentScene();
   EXPECT_EQ(after->scene.update().moved, 1U);

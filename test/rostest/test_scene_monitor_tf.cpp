@@ -153,12 +153,12 @@ TEST_F(SceneMonitorTf, RefitsListsThatAreLockedToFrames) {
   Marker list = at(cube("belt", 1, 0.25), ros::Time(5));
   list.type = Marker::CUBE_LIST;
   list.frame_locked = true;
-  list.points.resize(200);
+  list.points.resize(2000);
   for (std::size_t n = 0; n < list.points.size(); ++n) {
     list.points[n].y = 2.0 * static_cast<double>(n);
   }
   say({list});
-  ASSERT_TRUE(hasBoxes(*monitor_, 200));
+  ASSERT_TRUE(hasBoxes(*monitor_, 2000));
   const MonitorStatistics before = monitor_->statistics();
   for (int second = 10; second < 15; ++second) {
     move("belt", ros::Time(second), second, kQuarterTurn);
