@@ -34,17 +34,23 @@ const std::array<const char*, kRejections>& rejectionNames() {
 }
 
 std::size_t BoxChange::rejected() const {
-  return std::accumulate(rejections.begin(), rejections.end(), std::size_t{0});
+  return rejections
+             ? std::accumulate(rejections->counts.begin(), rejections->counts.end(), std::size_t{0})
+             : 0;
 }
 
 void BoxChange::reject(Rejection why, std::size_t count, const std::string& detail,
                        std::int64_t box_id) {
-  const auto reason = static_cast<std::size_t>(why);
-  if (count > 0 && problem.empty()) {
-    problem = "box " + std::to_string(box_id) + " of namespace '" + ns + "' has " +
-              rejectionNames().at(reason) + " (" + detail + ")";
+  if (count == 0) {
+    return;
   }
-  rejections.at(reason) += static_cast<std::uint32_t>(count);
+  const auto reason = static_cast<std::size_t>(why);
+  Rejected& all = rejections.make();
+  if (all.problem.empty()) {
+    all.problem = "box " + std::to_string(box_id) + " of namespace '" + ns + "' has " +
+                  rejectionNames().at(reason) + " (" + detail + ")";
+  }
+  all.counts.at(reason) += static_cast<std::uint32_t>(count);
 }
 
 void BoxChange::addHostile(std::int64_t box_id, const Vector3& center,

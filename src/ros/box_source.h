@@ -6,6 +6,7 @@
 #include "ros/box_list.h"
 #include "ros/frame_name.h"
 #include "ros/limits.h"
+#include "ros/rare.h"
 #include "ros/wire_reader.h"
 
 #include <box_query/geometry.h>
@@ -49,6 +50,12 @@ inline bool isNearUnit(const Quaternion& q) {
   return isNearUnit(q.squaredNorm());
 }
 
+/// Boxes that were not accepted.
+struct Rejected {
+  std::array<std::uint32_t, kRejections> counts{};
+  std::string problem;  ///< what was wrong with the first of them
+};
+
 struct RigidObject;
 
 /// A change of what a topic says under one (ns, id): one marker, say.
@@ -80,10 +87,10 @@ struct BoxChange {
   std::int64_t lifetime = 0;  ///< [ns] of ROS time from receipt; 0: forever
   BoxList boxes;
   std::shared_ptr<const RigidObject> object;  ///< kSet, kAppend: not null if it can be moved
-  std::array<std::uint32_t, kRejections> rejections{};  ///< boxes that were not accepted
-  std::string problem;                                  ///< what was wrong with the first of them
+  Rare<Rejected> rejections;
 
   std::size_t rejected() const;
+  std::string problem() const { return rejections ? rejections->problem : std::string(); }
   /// Counts `boxes` bad ones, the first of which is `box_id`.
   void reject(Rejection why, std::size_t count, const std::string& detail, std::int64_t box_id);
   /// The only door for boxes: checks one, halves its `size` (full sides [m]) and appends it, or

@@ -30,7 +30,7 @@ Word BoxStore::hear(std::size_t topic_index, BoxChange&& change, const ros::Time
   item.latest_word = word.number;
   item.latest_stamp = word.change.stamp;
   item.latest_expiry = word.expiry;
-  item.problem = word.change.problem;
+  item.problem = word.change.problem();
   if (word.change.object) {
     item.object = word.change.object;
   }

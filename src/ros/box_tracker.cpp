@@ -190,8 +190,8 @@ void BoxTracker::hear(std::size_t topic, BoxChange&& change, bool whole, const r
   counts_.boxes += change.boxes.size() + rejected;
   counts_.rejected_boxes += rejected;
   for (std::size_t why = 0; rejected > 0 && why < kRejections; ++why) {
-    if (change.rejections[why] > 0) {
-      counts_.rejections[rejectionNames()[why]] += change.rejections[why];
+    if (change.rejections->counts[why] > 0) {
+      counts_.rejections[rejectionNames()[why]] += change.rejections->counts[why];
     }
   }
   Word word = store_.hear(topic, std::move(change), now);

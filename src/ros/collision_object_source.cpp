@@ -196,7 +196,6 @@ void keep(Fields&& fields, BoxChange& change) {
   object.shapes = fields.primitives + fields.others;
   object.label = change.label;
   object.rejections = change.rejections;
-  object.problem = change.problem;
   const bool is_placed = fields.pose.position != Vector3::Zero() ||
                          fields.pose.orientation.coeffs() != Quaternion::Identity().coeffs();
   if (object.shapes == 1 && !is_placed) {  // MoveIt: the pose of the one shape is the object's

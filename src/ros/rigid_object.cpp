@@ -31,7 +31,6 @@ BoxChange moved(const std::shared_ptr<const RigidObject>& object, const BoxChang
   change.label = object->label;
   change.object = move.boxes.size() > 1 ? rearranged(*object, move, first_shape) : object;
   change.rejections = object->rejections;
-  change.problem = object->problem;
   const Placer placed(poseOf(move.boxes.front()));
   for (const IdentifiedBox& box : change.object->boxes) {
     const Pose now = placed(poseOf(box));

@@ -5,8 +5,6 @@
 
 #include "ros/box_source.h"
 
-#include <array>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -57,8 +55,7 @@ struct RigidObject {
   std::string label;
   std::vector<IdentifiedBox> boxes;  ///< their ids are their places among the shapes
   std::size_t shapes = 0;            ///< of any kind
-  std::array<std::uint32_t, kRejections> rejections{};  ///< boxes that cannot be moved either
-  std::string problem;
+  Rare<Rejected> rejections;         ///< boxes that cannot be moved either
 };
 
 /// The change that says the same of the object where a kMove change puts it. Of the shapes that the

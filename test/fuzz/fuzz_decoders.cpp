@@ -126,7 +126,7 @@ void testOne(const std::uint8_t* data, std::size_t size) {
     require(std::max({change.ns.size(), change.label.size(), change.frame.size()}) <=
                 limits().name_length,
             "names are no longer than allowed");
-    require(change.rejected() == 0 || !change.problem.empty(), "a rejected box is explained");
+    require(change.rejected() == 0 || !change.problem().empty(), "a rejected box is explained");
   }
   require(boxes <= kMaxBoxes, "there are no more boxes than allowed");
 }

@@ -57,7 +57,7 @@ inline DecodedMessage decodeBytes(std::string_view type, const Bytes& bytes,
 }
 
 inline std::size_t countOf(const BoxChange& change, Rejection why) {
-  return change.rejections.at(static_cast<std::size_t>(why));
+  return change.rejections ? change.rejections->counts.at(static_cast<std::size_t>(why)) : 0;
 }
 
 /// "ns/id:x" of every box, in the order of the changes.

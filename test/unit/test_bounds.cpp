@@ -198,7 +198,7 @@ std::string refusal(const Parameters& parameters, std::size_t boxes, std::size_t
   const test::Bytes bytes = test::wire(list);
   const DecodedMessage message = decodeMessage(test::sourceNamed("visualization_msgs/Marker"),
                                                bytes.data(), bytes.size(), Limits(parameters));
-  return message.problem.empty() ? message.changes.at(0).problem : message.problem;
+  return message.problem.empty() ? message.changes.at(0).problem() : message.problem;
 }
 
 TEST(BoundsOfAMessage, AreThoseOfTheParameters) {

@@ -109,7 +109,7 @@ TEST(CollisionObjectSource, FindsOneBadBoxOfAnyKindAmongGoodOnes) {
     const BoxChange& change = message.changes.at(0);
     EXPECT_EQ(change.rejected(), 1U);
     EXPECT_EQ(change.object->boxes.size(), 2U) << "nor can it be moved";
-    const auto& counts = change.rejections;
+    const auto& counts = change.rejections->counts;
     return static_cast<Rejection>(std::find(counts.begin(), counts.end(), 1U) - counts.begin());
   };
   EXPECT_EQ(rejection([](auto& sides, auto&) { sides.pop_back(); }), Rejection::kShape);

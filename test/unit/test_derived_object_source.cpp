@@ -113,8 +113,8 @@ TEST(DerivedObjectSource, RejectsBadBoxesAndKeepsTheRest) {
   EXPECT_EQ(countOf(message.changes[0], Rejection::kNotFinite), 1U);
   EXPECT_EQ(countOf(message.changes[0], Rejection::kNegativeSize), 1U);
   EXPECT_EQ(countOf(message.changes[0], Rejection::kOrientation), 1U);
-  EXPECT_NE(message.changes[0].problem.find("it has 2"), std::string::npos)
-      << message.changes[0].problem;
+  EXPECT_NE(message.changes[0].problem().find("it has 2"), std::string::npos)
+      << message.changes[0].problem();
 }
 
 TEST(DerivedObjectSource, RefusesMessagesWithTooManyBoxes) {

@@ -269,7 +269,7 @@ TEST(GarbageInBoxes, NumbersOutOfBoundsAreExplained) {
       std::find_if(example.fields.begin(), example.fields.end(),
                    [](const RecordedField& each) { return each.kind == Kind::kDouble; });
   const auto problemOf = [&](double x) {
-    return decodeBytes(example.type, withValue(example.bytes, *field, x)).changes.at(0).problem;
+    return decodeBytes(example.type, withValue(example.bytes, *field, x)).changes.at(0).problem();
   };
   EXPECT_EQ(problemOf(1e7), "");
   EXPECT_EQ(problemOf(-1.5e7),

@@ -117,11 +117,11 @@ TEST(JskSource, RejectsBadBoxesAndKeepsTheRest) {
   EXPECT_EQ(countOf(message.changes[0], Rejection::kNotFinite), 3U);
   EXPECT_EQ(countOf(message.changes[0], Rejection::kNegativeSize), 1U);
   EXPECT_EQ(countOf(message.changes[0], Rejection::kOrientation), 1U);
-  EXPECT_NE(message.changes[0].problem.find("box 1 of namespace '1'"), std::string::npos)
-      << message.changes[0].problem;
+  EXPECT_NE(message.changes[0].problem().find("box 1 of namespace '1'"), std::string::npos)
+      << message.changes[0].problem();
   EXPECT_EQ(countOf(message.changes[1], Rejection::kFrame), 1U);
-  EXPECT_NE(message.changes[1].problem.find("box 6 "), std::string::npos)
-      << message.changes[1].problem;
+  EXPECT_NE(message.changes[1].problem().find("box 6 "), std::string::npos)
+      << message.changes[1].problem();
 }
 
 TEST(JskSource, RefusesMessagesWithTooManyBoxes) {

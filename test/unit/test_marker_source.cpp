@@ -26,6 +26,10 @@ DecodedMessage decodeBytes(const Bytes& bytes) {
   return test::decodeBytes("visualization_msgs/MarkerArray", bytes);
 }
 
+TEST(MarkerSource, AChangeTakesNoMoreMemoryThanAMarker) {
+  EXPECT_LE(sizeof(BoxChange), sizeof(Marker));
+}
+
 TEST(MarkerSource, DecodesEveryFieldOfACube) {
   const DecodedMessage message = decode(cube());
   ASSERT_EQ(message.problem, "");
@@ -138,9 +142,9 @@ TEST(MarkerSource, RejectsNumbersThatAreNotFiniteAndKeepsTheRest) {
         ASSERT_EQ(message.changes.size(), 2U);
         EXPECT_TRUE(message.changes[0].boxes.empty());
         EXPECT_EQ(countOf(message.changes[0], Rejection::kNotFinite), boxes);
-        EXPECT_NE(message.changes[0].problem.find("box -3 of namespace 'crates'"),
+        EXPECT_NE(message.changes[0].problem().find("box -3 of namespace 'crates'"),
                   std::string::npos)
-            << message.changes[0].problem;
+            << message.changes[0].problem();
         EXPECT_EQ(message.changes[1].boxes.size(), 1U);
       }
     }
@@ -152,7 +156,7 @@ TEST(MarkerSource, RejectsNegativeSizesOrientationsOffUnitLengthAndBadFrames) {
   negative.scale.y = -1e-300;
   EXPECT_EQ(countOf(decode(negative).changes.at(0), Rejection::kNegativeSize), 1U);
   negative.scale.y = -1e-9;
-  const std::string problem = decode(negative).changes.at(0).problem;
+  const std::string problem = decode(negative).changes.at(0).problem();
   EXPECT_NE(problem.find("(-1e-09 m)"), std::string::npos) << problem;
 
   for (const double norm : {0.5, 0.98, 1.02, 1e-200, 1e200}) {

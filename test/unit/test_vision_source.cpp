@@ -129,9 +129,9 @@ TEST(VisionSource, FindsASingleBadNumberAmongManyBoxes) {
     list[3] = bad;
     const BoxChange change = decodeBytes(kBoxes, wire(boxes(list))).changes.at(0);
     EXPECT_EQ(change.boxes.size(), 4U);
-    EXPECT_EQ(countOf(change, why), 1U) << change.problem;
+    EXPECT_EQ(countOf(change, why), 1U) << change.problem();
     EXPECT_EQ(change.rejected(), 1U);
-    EXPECT_EQ(change.problem.rfind("box 3 ", 0), 0U) << change.problem;
+    EXPECT_EQ(change.problem().rfind("box 3 ", 0), 0U) << change.problem();
     EXPECT_EQ(change.boxes.id(2), 2);
     EXPECT_EQ(change.boxes.id(3), 4) << "identities do not move up";
     ++found;
