@@ -275,6 +275,47 @@ SceneSample large(Random& random) {
   return scene;
 }
 
+/// A box turned by the angle of sine 4/5, and points outside it along the normal of a face, which
+/// has length 5, or along (-7, 24) from an edge, which has length 25: distances and ranges are
+/// halfway between two doubles, or off that by 2^-49 to 2^-116.
+SceneSample midpoints(Random& random) {
+  SceneSample scene;
+  const bool of_edge = random.chance(0.5);
+  const Vector3 away = of_edge ? Vector3(-7.0, 24.0, 0.0) : Vector3(3.0, 4.0, 0.0);
+  const Vector3 corner = of_edge ? Vector3(-0.25, 1.75, 0.0) : Vector3(0.0, 0.0, 0.0);
+  const double side = random.sign();
+  const double off = random.chance(0.4) ? 0.0 : std::ldexp(side, -random.between(54, 118));
+  Quaternion turn(2.0, 0.0, 0.0, 1.0);
+  turn.coeffs() *= random.magnitude(-20, 20);
+  const OrientedBox box{off * away, turn, Vector3(1.25, 1.25, 4.0)};
+  scene.boxes.emplace_back(box);
+  for (int i = random.chance(0.4) ? 0 : boxCount(random); i > 0; --i) {
+    const Vector3 center = random.uniformVector(-30.0, 30.0) + Vector3(0.0, 0.0, 400.0);
+    const Quaternion rotation = random.rotation();
+    scene.boxes.push_back(
+        makeTarget(random.chance(0.7), center, rotation, Vector3(1.0, 1.0, 1.0)).box());
+  }
+  for (int i = 0; i < 6; ++i) {
+    // 25 or 5 times it is an odd multiple of half an ulp.
+    const int digits = of_edge ? 48 : 50;
+    const double times =
+        std::floor(std::ldexp(random.uniform(of_edge ? 1.3 : 1.9, 2.0), digits - 1));
+    const double length = std::ldexp(2.0 * times + 1.0, -digits);
+    const Vector3 place = corner + length * away + Vector3(0.0, 0.0, random.half(1));
+    Sample sample{box, place, random.sign() * away, place};
+    if (of_edge) {
+      const Vector3 across(24.0, 7.0, 0.0);
+      sample.origin -= std::ldexp(random.below(512), -10) * across;
+      sample.end += std::ldexp(random.below(512), -10) * across;
+    } else if (random.chance(0.8)) {
+      const Vector3 further = away + Vector3(0.0, 0.0, random.half(1));
+      sample.end += random.uniform(0.0, 2.0) * further;
+    }
+    scene.components.push_back(sample);
+  }
+  return scene;
+}
+
 struct SceneFamily {
   const char* name;
   SceneSample (*make)(Random& random);
@@ -287,7 +328,7 @@ const SceneFamily kFamilies[] = {
     {"scene_near_ties", nearTies, 1},   {"scene_far_nest", farNest, 1},
     {"scene_hostile", hostilePairs, 1}, {"scene_turned_shelf", turnedShelf, 1},
     {"scene_limits", sceneLimits, 1},   {"scene_unusual", unusual, 1},
-    {"scene_large", large, 40},
+    {"scene_large", large, 40},         {"scene_midpoints", midpoints, 1},
 };
 
 }  // namespace
