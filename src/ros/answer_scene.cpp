@@ -35,13 +35,7 @@ void answer(const GetSceneRequest& request, const Snapshot& snapshot, const ros:
     }
     const OrientedBox box =
         std::visit([](const auto& solid) { return oriented(solid); }, snapshot.scene.boxes()[i]);
-    geometry_msgs::Pose pose;
-    pose.position = toPoint(box.center);
-    pose.orientation.w = box.orientation.w();
-    pose.orientation.x = box.orientation.x();
-    pose.orientation.y = box.orientation.y();
-    pose.orientation.z = box.orientation.z();
-    response.poses.push_back(pose);
+    response.poses.push_back(toPose(box.center, box.orientation));
     response.sizes.push_back(toVector3(2 * box.half_extents));
     response.stamps.push_back(snapshot.stamps[i]);
     appendName(snapshot.names[i], response);

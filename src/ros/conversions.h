@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// @file
-/// Vectors as messages, and the change of frame of a request. Nothing here rounds where the frames
-/// are equal.
+/// Vectors and poses as messages, and the change of frame of a request. Nothing here rounds where
+/// the frames are equal.
 #pragma once
 
 #include <box_query/geometry.h>
@@ -9,6 +9,7 @@
 #include <limits>
 
 #include <geometry_msgs/Point.h>
+#include <geometry_msgs/Pose.h>
 #include <geometry_msgs/Transform.h>
 #include <geometry_msgs/Vector3.h>
 
@@ -35,6 +36,21 @@ inline geometry_msgs::Point toPoint(const Vector3& point) {
 }
 inline geometry_msgs::Vector3 toVector3(const Vector3& vector) {
   return toMessage<geometry_msgs::Vector3>(vector);
+}
+
+inline geometry_msgs::Quaternion toQuaternion(const Quaternion& rotation) {
+  geometry_msgs::Quaternion xyzw;
+  xyzw.x = rotation.x();
+  xyzw.y = rotation.y();
+  xyzw.z = rotation.z();
+  xyzw.w = rotation.w();
+  return xyzw;
+}
+inline geometry_msgs::Pose toPose(const Vector3& position, const Quaternion& orientation) {
+  geometry_msgs::Pose pose;
+  pose.position = toPoint(position);
+  pose.orientation = toQuaternion(orientation);
+  return pose;
 }
 
 /// The point of a segment at parameter t in [0, 1]: exactly an end for 0 and 1, never outside the

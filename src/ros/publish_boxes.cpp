@@ -3,6 +3,7 @@
 /// Publishes boxes of a CSV file as a visualization_msgs/MarkerArray on `boxes`, latched. README.md
 /// describes its parameters.
 #include "ros/box_csv.h"
+#include "ros/conversions.h"
 
 #include <algorithm>
 #include <array>
@@ -107,16 +108,8 @@ class MarkerWriter {
       visualization_msgs::Marker marker = identified(box.box_class, idOf(box), box.frame_id, stamp);
       marker.action = visualization_msgs::Marker::ADD;
       marker.text = box.id;
-      marker.pose.position.x = box.center.x();
-      marker.pose.position.y = box.center.y();
-      marker.pose.position.z = box.center.z();
-      marker.pose.orientation.x = box.orientation.x();
-      marker.pose.orientation.y = box.orientation.y();
-      marker.pose.orientation.z = box.orientation.z();
-      marker.pose.orientation.w = box.orientation.w();
-      marker.scale.x = box.size.x();
-      marker.scale.y = box.size.y();
-      marker.scale.z = box.size.z();
+      marker.pose = toPose(box.center, box.orientation);
+      marker.scale = toVector3(box.size);
       marker.color = colorOf(box.box_class);
       message.markers.push_back(marker);
       shown.emplace(Key(marker.ns, marker.id), box.frame_id);

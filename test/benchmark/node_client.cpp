@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "benchmark/node_client.h"
 
+#include "ros/conversions.h"
+
 namespace box_query::benchmark {
 
 using visualization_msgs::Marker;
@@ -15,16 +17,8 @@ MarkerArray markersOf(const std::vector<OrientedBox>& boxes) {
     marker.id = static_cast<std::int32_t>(array.markers.size());
     marker.type = Marker::CUBE;
     marker.text = "pallet";
-    marker.pose.position.x = box.center.x();
-    marker.pose.position.y = box.center.y();
-    marker.pose.position.z = box.center.z();
-    marker.pose.orientation.w = box.orientation.w();
-    marker.pose.orientation.x = box.orientation.x();
-    marker.pose.orientation.y = box.orientation.y();
-    marker.pose.orientation.z = box.orientation.z();
-    marker.scale.x = 2.0 * box.half_extents.x();
-    marker.scale.y = 2.0 * box.half_extents.y();
-    marker.scale.z = 2.0 * box.half_extents.z();
+    marker.pose = toPose(box.center, box.orientation);
+    marker.scale = toVector3(2.0 * box.half_extents);
     array.markers.push_back(marker);
   }
   return array;

@@ -54,10 +54,7 @@ FrameChange frameOf(const std_msgs::Header& header) {
   const Pose pose = poseAt(header.frame_id, tickAt(header.stamp));
   geometry_msgs::Transform transform;
   transform.translation = toVector3(pose.translation);
-  transform.rotation.w = pose.quaternion.w();
-  transform.rotation.x = pose.quaternion.x();
-  transform.rotation.y = pose.quaternion.y();
-  transform.rotation.z = pose.quaternion.z();
+  transform.rotation = toQuaternion(pose.quaternion);
   return FrameChange(transform);
 }
 

@@ -17,13 +17,7 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 geometry_msgs::Pose poseOf(const OrientedBox& box) {
-  geometry_msgs::Pose pose;
-  pose.position = toPoint(box.center);
-  pose.orientation.w = box.orientation.w();
-  pose.orientation.x = box.orientation.x();
-  pose.orientation.y = box.orientation.y();
-  pose.orientation.z = box.orientation.z();
-  return pose;
+  return toPose(box.center, box.orientation);
 }
 
 geometry_msgs::Vector3 sizeOf(const OrientedBox& box) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "load/world.h"
 
+#include "ros/conversions.h"
+
 #include <cmath>
 #include <random>
 
@@ -124,13 +126,8 @@ std::vector<geometry_msgs::TransformStamped> transformsAt(Tick tick) {
     transform.header.stamp = timeOf(tick);
     transform.header.frame_id = frame == kLidar ? kRobot : kFixedFrame;
     transform.child_frame_id = frame;
-    transform.transform.translation.x = pose.translation.x();
-    transform.transform.translation.y = pose.translation.y();
-    transform.transform.translation.z = pose.translation.z();
-    transform.transform.rotation.w = pose.quaternion.w();
-    transform.transform.rotation.x = pose.quaternion.x();
-    transform.transform.rotation.y = pose.quaternion.y();
-    transform.transform.rotation.z = pose.quaternion.z();
+    transform.transform.translation = toVector3(pose.translation);
+    transform.transform.rotation = toQuaternion(pose.quaternion);
   }
   return transforms;
 }

@@ -97,11 +97,7 @@ inline visualization_msgs::MarkerArray randomBoxes(unsigned seed) {
     const OrientedBox& box = boxOf(snapshot, static_cast<std::size_t>(i));
     visualization_msgs::Marker marker = cube("map", i, 0);
     marker.ns = i % 2 == 0 ? "even" : "odd";
-    marker.pose.position = toPoint(box.center);
-    marker.pose.orientation.w = box.orientation.w();
-    marker.pose.orientation.x = box.orientation.x();
-    marker.pose.orientation.y = box.orientation.y();
-    marker.pose.orientation.z = box.orientation.z();
+    marker.pose = toPose(box.center, box.orientation);
     marker.scale = toVector3(2 * box.half_extents);
     markers.push_back(marker);
   }
