@@ -39,6 +39,8 @@ const std::vector<Promise>& promises() {
        Q::kClosest30, kOne, {"pairs"}, 0, kAnySize, {"double slabs, eight at once"}, 1.0},
       {"closest of 16 in cache, listing 9 over ours",
        Q::kClosest30, kOne, {"pairs"}, 0, kAnySize, {"listing 9"}, 10.0},
+      {"distance of 16 in cache, exact scalar ones over ours",
+       Q::kClearance, kOne, {"pairs apart"}, 0, kAnySize, {"exact distances, one by one"}, 10.0},
       {"distance of 16 in cache, plain scalar ones over ours",
        Q::kClearance, kOne, {"pairs apart"}, 0, kAnySize, {"double slabs, one by one"}, 10.0},
       {"closest of 8 to 32, Embree over ours",

@@ -163,7 +163,8 @@ std::vector<SpeedMethodKind> pairMethods() {
   return {{"box_query", makeMethod<Ours>},
           {"double slabs, one by one", makeScan, false},
           {"double slabs, eight at once", makeSlabsOfEight, false},
-          {"listing 9, one by one", makeFindScan, false}};
+          {"listing 9, one by one", makeFindScan, false},
+          {"exact distances, one by one", makeExactScan, false}};
 }
 
 std::vector<std::string> peerNotes() {

@@ -4,6 +4,8 @@
 #include "benchmark/methods_paper.h"
 #include "benchmark/plain_distance.h"
 
+#include <box_query/distance.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -200,6 +202,30 @@ class FindScan final : public SpeedMethod {
   std::vector<listings::OrientedBox3> boxes_;
 };
 
+class ExactScan final : public SpeedMethod {
+ public:
+  explicit ExactScan(const std::vector<OrientedBox>& boxes) : boxes_(boxes) {}
+
+  bool canAnswer(Question question) const override { return question == Question::kClearance; }
+  SpeedAnswer ask(Question /*question*/, const Ray& ray) const override {
+    const Segment segment = segmentAlong(ray, kPathLength);
+    SpeedAnswer best{kNoBox, kInf};
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      const double d = distance(segment, boxes_[i]).distance;
+      if (d < best.value) {
+        best = {i, d};
+      }
+    }
+    return best;
+  }
+  std::uint64_t pass(Question question, const std::vector<Ray>& rays) const override {
+    return passOf(*this, question, rays);
+  }
+
+ private:
+  std::vector<OrientedBox> boxes_;
+};
+
 }  // namespace
 
 std::unique_ptr<SpeedMethod> makeScan(const std::vector<OrientedBox>& boxes) {
@@ -210,6 +236,10 @@ std::unique_ptr<SpeedMethod> makeSlabsOfEight(const std::vector<OrientedBox>& bo
 }
 std::unique_ptr<SpeedMethod> makeFindScan(const std::vector<OrientedBox>& boxes) {
   return std::make_unique<FindScan>(boxes);
+}
+
+std::unique_ptr<SpeedMethod> makeExactScan(const std::vector<OrientedBox>& boxes) {
+  return std::make_unique<ExactScan>(boxes);
 }
 
 }  // namespace box_query::benchmark
