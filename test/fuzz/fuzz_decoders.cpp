@@ -4,11 +4,9 @@
 #include "fuzz/fuzz.h"
 #include "ros/box_source.h"
 #include "unit/foreign_messages.h"
-#include "unit/source_fixture.h"
+#include "unit/marker_messages.h"
 
 #include <algorithm>
-
-#include <visualization_msgs/MarkerArray.h>
 
 namespace box_query::fuzz {
 namespace {
@@ -46,29 +44,15 @@ void addSeed(const char* type, const Message& message, std::vector<Bytes>& all) 
   require(false, std::string("there is a source of ") + type);
 }
 
-visualization_msgs::Marker cube() {
-  visualization_msgs::Marker marker;
-  marker.header.frame_id = "map";
-  marker.ns = "rack";
-  marker.type = visualization_msgs::Marker::CUBE;
-  marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
-  marker.pose.orientation.w = 1.0;
-  marker.text = "label";
-  return marker;
-}
-
 }  // namespace
 
 std::vector<Bytes> seeds() {
   std::vector<Bytes> all;
-  visualization_msgs::Marker list = cube();
-  list.type = visualization_msgs::Marker::CUBE_LIST;
-  list.points.resize(3);
-  list.colors.resize(3);
-  visualization_msgs::Marker gone = cube();
+  const visualization_msgs::Marker list = test::cubeList();
+  visualization_msgs::Marker gone = test::cube();
   gone.action = visualization_msgs::Marker::DELETEALL;
   visualization_msgs::MarkerArray markers;
-  markers.markers = {cube(), list, gone, cube()};
+  markers.markers = {test::cube(), list, gone, test::cube()};
   addSeed("visualization_msgs/MarkerArray", markers, all);
   addSeed("visualization_msgs/Marker", list, all);
 
