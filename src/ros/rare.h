@@ -4,7 +4,6 @@
 #pragma once
 
 #include <memory>
-#include <utility>
 
 namespace box_query {
 
@@ -15,7 +14,10 @@ class Rare {
   Rare() = default;
   Rare(const Rare& other) : thing_(other ? std::make_unique<T>(*other.thing_) : nullptr) {}
   Rare(Rare&& other) noexcept = default;
-  Rare& operator=(const Rare& other) { return *this = Rare(other); }
+  Rare& operator=(const Rare& other) {
+    thing_ = Rare(other).thing_;
+    return *this;
+  }
   Rare& operator=(Rare&& other) noexcept = default;
   ~Rare() = default;
 
