@@ -233,9 +233,17 @@ class AllVisit : public RayVisit {
   Answer answer() const { return answerOfFound(); }
 };
 
-/// Of a ray that is not compared with any bounds.
-static inline Answer answerOf(Outcome outcome) {
-  return outcome == Outcome::kMiss ? Answer::kNone : Answer::kNotTaken;
+/// Prepares a ray for bounds: ask(ray) answers, where it is to be compared with any.
+template <typename Ask>
+[[gnu::always_inline]] static inline Answer askPrepared(const SceneView& view,
+                                                        const RayQuery& query, bool in_stretches,
+                                                        const Ask& ask) {
+  FloatRay ray;
+  const Outcome outcome = prepare(view, query, ray, in_stretches);
+  if (outcome != Outcome::kReady) {
+    return outcome == Outcome::kMiss ? Answer::kNone : Answer::kNotTaken;
+  }
+  return ask(ray);
 }
 
 // One function for each kind of tree, in which a ray is prepared too: little goes through memory,
@@ -244,39 +252,29 @@ static inline Answer answerOf(Outcome outcome) {
 template <typename Visit>
 [[gnu::noinline]] static Answer searchList(const SceneView& view, const RayQuery& query,
                                            Found& found) {
-  FloatRay ray;
-  const Outcome outcome = prepare(view, query, ray, false);
-  if (outcome != Outcome::kReady) {
-    return answerOf(outcome);
-  }
-  return searchList<Visit>(view, query, found, ray);
+  return askPrepared(view, query, false,
+                     [&](FloatRay& ray) { return searchList<Visit>(view, query, found, ray); });
 }
 
 template <typename Visit>
 [[gnu::noinline]] static Answer searchTwoLevels(const SceneView& view, const RayQuery& query,
                                                 Found& found) {
-  FloatRay ray;
-  const Outcome outcome = prepare(view, query, ray, false);
-  if (outcome != Outcome::kReady) {
-    return answerOf(outcome);
-  }
-  Visit visit(view, query, found, ray);
-  visit.clear();
-  visitTwoLevels(view, ray, visit);
-  return visit.answer();
+  return askPrepared(view, query, false, [&](FloatRay& ray) {
+    Visit visit(view, query, found, ray);
+    visit.clear();
+    visitTwoLevels(view, ray, visit);
+    return visit.answer();
+  });
 }
 
 template <typename Visit>
 [[gnu::noinline]] static Answer searchTree(const SceneView& view, const RayQuery& query,
                                            Found& found) {
-  FloatRay ray;
-  const Outcome outcome = prepare(view, query, ray, true);
-  if (outcome != Outcome::kReady) {
-    return answerOf(outcome);
-  }
-  Visit visit(view, query, found, ray);
-  descendInStretches(view, ray, visit);
-  return visit.answer();
+  return askPrepared(view, query, true, [&](FloatRay& ray) {
+    Visit visit(view, query, found, ray);
+    descendInStretches(view, ray, visit);
+    return visit.answer();
+  });
 }
 
 /// (Each with little of its own, so that most rays among few boxes need no more.)
@@ -309,12 +307,12 @@ static Answer any(const SceneView& view, const RayQuery& query, Found& found) {
 }
 
 static Answer all(const SceneView& view, const RayQuery& query, Found& found) {
-  FloatRay ray;
-  const Outcome outcome = view.depth > 0 ? prepare(view, query, ray, false) : Outcome::kMiss;
-  if (outcome != Outcome::kReady) {
-    return answerOf(outcome);
+  if (view.depth == 0) {
+    return Answer::kNone;
   }
-  AllVisit visit(view, query, found, ray);
-  descend(view, ray, visit);
-  return visit.answer();
+  return askPrepared(view, query, false, [&](FloatRay& ray) {
+    AllVisit visit(view, query, found, ray);
+    descend(view, ray, visit);
+    return visit.answer();
+  });
 }
