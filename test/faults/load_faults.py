@@ -129,7 +129,7 @@ def fault_viewer_that_does_not_read(world, report):
     viewer.read()
     check(('status', 0) in viewer.shown, 'it is not said that a topic is not heard:', viewer.shown)
     report.begin()
-    report.most = 150.0  # two messages of 14 MB, one that is made, and what the boxes take
+    report.growth = report.most = 150.0  # two messages of 14 MB, one that is made, and what the boxes take
     many = world.speak('many', 'boxes', 10000, 'map', 'moves')
     time.sleep(2.0)
     world.speak('boxes', 'late', 'Marker', 'map', 9, 1)
