@@ -128,6 +128,13 @@ TEST(Mutations, ShrunkBoundsOfDistancesInScenesAreNoticed) {
   EXPECT_GT(wrongScenes("scene_midpoints", 200), 0U);
 }
 
+TEST(Mutations, ShrunkBoundsOfDistancesByAxesAreNoticed) {
+  const Spoilt<bool> by_axes(mutation.refine_by_axes, true);
+  const Spoilt<double> row(bounds::kRow, bounds::kRow / 1024);  // first seen at 1/256
+  const Spoilt<double> operation(bounds::kOperation, bounds::kOperation / 1024);
+  EXPECT_GT(wrongScenes("scene_midpoints", 400), 0U);
+}
+
 TEST(Mutations, ASkippedRoundingTestOfDistancesInScenesIsNoticed) {
   const Spoilt<bool> spoilt(mutation.skip_rounding_test, true);
   EXPECT_GT(wrongScenes("scene_midpoints", 200), 0U);
