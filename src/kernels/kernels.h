@@ -18,8 +18,8 @@ struct Kernels {
   const char* name;
 
   /// Whether a ray is sooner compared with all boxes of a scene than with their bounds.
-  /// @param bounds_met how many bounds a ray through all of the scene meets
-  bool (*prefers_blocks)(std::size_t boxes, double bounds_met);
+  /// @pre boxes <= kMostInBlocks
+  bool (*prefers_blocks)(std::size_t boxes, const Density& density);
 
   /// Finds all boxes that may be the first that is entered: whatever is not left in `found`, or
   /// was not taken, is certainly not entered before the one of them that is.

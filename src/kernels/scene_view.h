@@ -57,6 +57,12 @@ constexpr std::uint32_t kMostInBlocks = 1024;
 /// Of boxes, met by a ray through all of a scene, where the scene is a heap.
 constexpr double kManyBounds = 8.0;
 
+/// How many bounds of boxes a ray meets.
+struct Density {
+  double bounds_met;  ///< a ray along the longest side of the scene
+  double in_vain;     ///< a ray at random: those whose box it does not meet
+};
+
 /// Center and half extents of a box in a block: at most this far away.
 constexpr double kFarthestInBlocks = 0x1p40;
 

@@ -43,6 +43,18 @@ void findCenter(const SceneBoxes& boxes, double* center) {
   }
 }
 
+/// Half the surface of a box.
+double areaOf(const double* sides) {
+  return sides[0] * sides[1] + (sides[1] + sides[0]) * sides[2];
+}
+double areaOf(const kernels::BoxRecord& box) {
+  double sides[3];
+  for (int i = 0; i < 3; ++i) {
+    sides[i] = box.isAligned() ? box.column[1][i] - box.column[0][i] : 2.0 * box.extent[i];
+  }
+  return areaOf(sides);
+}
+
 }  // namespace
 
 // A box is prepared twice, which takes less time than to keep it.
@@ -74,7 +86,8 @@ BoxTree::BoxTree(const SceneBoxes& boxes) {
   built_records_ = records_.size();
   measure();
   built_cost_ = cost_;
-  if (kernels::active().prefers_blocks(records_.size(), bounds_met_)) {
+  if (records_.size() <= kernels::kMostInBlocks &&
+      kernels::active().prefers_blocks(records_.size(), {bounds_met_, metInVain()})) {
     blocks_ = blocksOf(records_, center_);
   }
 }
@@ -149,6 +162,23 @@ void BoxTree::measure() {
     }
   }
   cost_ /= static_cast<double>(around.area());
+}
+
+/// Of the bounds of boxes that a ray through all of it meets, how many do so in vain: of a convex
+/// body each surface is met as often as it is large (Cauchy).
+double BoxTree::metInVain() const {
+  double area = 0.0;
+  for (const kernels::Bounds& bounds : levels_.front().bounds) {
+    area += areaOfSlots(bounds);
+  }
+  for (const kernels::BoxRecord& box : records_) {
+    area -= areaOf(box);
+  }
+  double sides[3];
+  for (int i = 0; i < 3; ++i) {
+    sides[i] = around_[1][i] - around_[0][i];
+  }
+  return area / areaOf(sides);
 }
 
 kernels::SceneView BoxTree::view() const {

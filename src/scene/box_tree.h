@@ -55,6 +55,7 @@ class BoxTree {
   void setRests(const SceneBoxes& boxes, std::size_t record);
   void addLeaves();
   void measure();
+  double metInVain() const;
   void dropAppended();
   bool moveBoxes(const SceneBoxes& boxes, const BoxChanges& changes);
   void refit();

@@ -151,14 +151,22 @@ std::vector<Box> boxesWithin(Sampler& sampler, std::size_t count, double spread,
   return boxes;
 }
 
-/// So many in a heap that the kernels compare them themselves though they make more than a list.
+/// Turned boxes that overlap so much that the kernels compare them themselves though they make more
+/// than a list.
 TEST(SceneUpdate, HeapedBoxesAreWhereTheyMovedTo) {
   Sampler sampler(8);
-  Scene scene(boxesWithin(sampler, 160, 6.0, 1.0, 3.0));
-  for (int step = 0; step < 12; ++step) {
-    Next next = nextOf(sampler, scene.boxes(), step % 3 == 0 ? 0.01 : 0.0, 0.3, 2.0, 0);
-    scene = scene.updated(next.boxes, next.previous);
-    expectAnswersOfNewScene(sampler, scene);
+  for (const std::size_t count : {160, 400}) {
+    std::vector<Box> heap;
+    while (heap.size() < count) {
+      heap.emplace_back(
+          OrientedBox{sampler.vector(-6.0, 6.0), sampler.rotation(), sampler.vector(2.0, 6.0)});
+    }
+    Scene scene(heap);
+    for (int step = 0; step < 12; ++step) {
+      Next next = nextOf(sampler, scene.boxes(), step % 3 == 0 ? 0.01 : 0.0, 0.3, 2.0, 0);
+      scene = scene.updated(next.boxes, next.previous);
+      expectAnswersOfNewScene(sampler, scene);
+    }
   }
 }
 

@@ -168,6 +168,33 @@ TEST(SkippedWork, OfAHeapNothingIsComparedInDoubleForARayThatPassesIt) {
   EXPECT_EQ(work.boxes, 0U);
 }
 
+/// A ray along such a scene meets the bounds of many boxes, but most rays meet those of few, and
+/// then the boxes too.
+TEST(SkippedWork, OfALongSceneAndOfAStackOnlyWhatIsNearARayIsCompared) {
+  for (const std::size_t size : {180, 600, 1024}) {
+    Sampler sampler(5);
+    std::vector<Box> road;
+    std::vector<Box> stack;
+    while (road.size() < size) {
+      const auto i = static_cast<double>(road.size());
+      const Vector3 center(2.0 * i, sampler.vector(-4.0, 4.0).y(), 0.0);
+      road.emplace_back(OrientedBox{center, sampler.rotation(), sampler.vector(0.5, 1.0)});
+      stack.emplace_back(AlignedBox{Vector3(0.0, 0.0, i), Vector3(200.0, 200.0, i + 0.5)});
+    }
+    const Scene along(road);
+    const Scene stacked(stack);
+    const auto count = static_cast<double>(size);
+    const QueryCounters work = workOf([&] {
+      for (std::size_t k = 0; k < kRays; ++k) {
+        const Vector3 at = sampler.vector(0.0, count);
+        along.castClosest({{2.0 * at.x(), 0.0, 0.0}, sampler.direction()}, 3.0);
+        stacked.castClosest({{100.0, 100.0, at.z()}, sampler.direction()}, 3.0);
+      }
+    });
+    EXPECT_LT(work.nodes, 2 * kRays * 8) << "among " << size;
+  }
+}
+
 TEST(SkippedWork, WhichOfTheBoxesThatARayStartsInComesFirstIsNotCompared) {
   const std::vector<Box> nest = [] {
     std::vector<Box> boxes;

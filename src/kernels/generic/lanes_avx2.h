@@ -279,7 +279,7 @@ static inline Double8 either(const Mask8& m, const Double8& a, const Double8& b)
   return {{_mm256_blendv_pd(b.v[0], a.v[0], m.v[0]), _mm256_blendv_pd(b.v[1], a.v[1], m.v[1])}};
 }
 /// See Kernels. (Measured.)
-static bool prefersBlocks(std::size_t boxes, double bounds_met) {
-  return boxes <= 16 || (boxes <= 48 && bounds_met > 1.0) ||
-         (boxes <= kMostInBlocks && static_cast<double>(boxes) < 2.2 * bounds_met);
+static bool prefersBlocks(std::size_t boxes, const Density& density) {
+  return boxes <= 16 || (boxes <= 48 && density.bounds_met > 1.0) ||
+         (density.bounds_met > kManyBounds && static_cast<double>(boxes) < 16.0 * density.in_vain);
 }

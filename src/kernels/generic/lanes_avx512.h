@@ -278,8 +278,8 @@ static inline Double8 either(Mask8 m, Double8 a, Double8 b) {
   return {_mm512_mask_mov_pd(b.v, m.bits, a.v)};
 }
 /// See Kernels. (Measured.)
-static bool prefersBlocks(std::size_t boxes, double bounds_met) {
-  return boxes <= 32 || (boxes <= 64 && bounds_met > 1.0) ||
-         (boxes <= kMostInBlocks && bounds_met > kManyBounds &&
-          (boxes <= 192 || static_cast<double>(boxes) < 8.0 * bounds_met));
+static bool prefersBlocks(std::size_t boxes, const Density& density) {
+  const double most = (boxes <= 192 ? 400.0 : 24.0) * density.in_vain;
+  return boxes <= 32 || (boxes <= 64 && density.bounds_met > 1.0) ||
+         (density.bounds_met > kManyBounds && static_cast<double>(boxes) < most);
 }

@@ -390,6 +390,6 @@ static inline void loadRays(const double* rays, const Double4& center, Float16* 
 /// What boxes of a block are compared in, where there are more than eight.
 using BlockLanes = Float8;
 /// See Kernels. (Measured.)
-static bool prefersBlocks(std::size_t boxes, double bounds_met) {
-  return boxes <= 16 || (boxes <= 48 && bounds_met > 1.0);
+static bool prefersBlocks(std::size_t boxes, const Density& density) {
+  return boxes <= 16 || (boxes <= 48 && density.bounds_met > 1.0);
 }
