@@ -120,10 +120,7 @@ std::vector<kernels::BoxBlock> blocksOf(const std::vector<kernels::BoxRecord>& r
     kernels::BoxBlock& block = blocks[k / kSlots];
     const std::size_t slot = k % kSlots;
     if (k >= records.size()) {
-      for (int i = 0; i < 3; ++i) {
-        block.extent[i][slot] = -kInf;
-        block.certain[i][slot] = -kInf;
-      }
+      clearSlot(block, slot);
       continue;
     }
     const FloatForm form = setForm(block, slot, records[k], scene_center);
@@ -139,6 +136,13 @@ std::vector<kernels::BoxBlock> blocksOf(const std::vector<kernels::BoxRecord>& r
     }
   }
   return blocks;
+}
+
+void clearSlot(kernels::BoxBlock& block, std::size_t slot) {
+  for (int i = 0; i < 3; ++i) {
+    block.extent[i][slot] = -kInf;
+    block.certain[i][slot] = -kInf;
+  }
 }
 
 kernels::LeafBoxes emptyLeaf() {

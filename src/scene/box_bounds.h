@@ -32,6 +32,7 @@ kernels::BoxRecord recordOf(const PreparedBox& box);
 /// @pre every one is for the kernels
 std::vector<kernels::BoxBlock> blocksOf(const std::vector<kernels::BoxRecord>& records,
                                         const double* scene_center);
+void clearSlot(kernels::BoxBlock& block, std::size_t slot);
 
 /// Leaves without boxes.
 kernels::LeafBoxes emptyLeaf();

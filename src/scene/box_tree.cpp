@@ -86,10 +86,7 @@ BoxTree::BoxTree(const SceneBoxes& boxes) {
   built_records_ = records_.size();
   measure();
   built_cost_ = cost_;
-  if (records_.size() <= kernels::kMostInBlocks &&
-      kernels::active().prefers_blocks(records_.size(), {bounds_met_, metInVain()})) {
-    blocks_ = blocksOf(records_, center_);
-  }
+  setBlocks();
 }
 
 void BoxTree::addRecords(const SceneBoxes& boxes, const std::vector<Item>& items) {
@@ -171,14 +168,29 @@ double BoxTree::metInVain() const {
   for (const kernels::Bounds& bounds : levels_.front().bounds) {
     area += areaOfSlots(bounds);
   }
-  for (const kernels::BoxRecord& box : records_) {
-    area -= areaOf(box);
+  for (std::size_t k = 0; k < records_.size(); ++k) {
+    area -= isGone(k) ? 0.0 : areaOf(records_[k]);
   }
   double sides[3];
   for (int i = 0; i < 3; ++i) {
     sides[i] = around_[1][i] - around_[0][i];
   }
   return area / areaOf(sides);
+}
+
+/// Keeps the boxes in blocks where that is faster, and those that are gone out of them.
+void BoxTree::setBlocks() {
+  blocks_.clear();
+  if (records_.size() > kernels::kMostInBlocks ||
+      !kernels::active().prefers_blocks(records_.size(), {bounds_met_, metInVain()})) {
+    return;
+  }
+  blocks_ = blocksOf(records_, center_);
+  for (std::size_t k = 0; k < records_.size() && !blocks_.empty(); ++k) {
+    if (isGone(k)) {
+      clearSlot(blocks_[k / kernels::kSlots], k % kernels::kSlots);
+    }
+  }
 }
 
 kernels::SceneView BoxTree::view() const {

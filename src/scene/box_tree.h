@@ -40,7 +40,7 @@ class BoxTree {
 
   /// The tree of boxes that come after those of this tree: the same nodes with other bounds, and
   /// one more root for those that are added. Nothing where a new tree is the better one, since
-  /// there are few boxes, some in blocks or that kernels may not take, or too much has changed.
+  /// there are few boxes, some that kernels may not take, or too much has changed.
   std::optional<BoxTree> updated(const SceneBoxes& boxes, const BoxChanges& changes) const;
 
   /// Valid as long as this tree is neither changed nor moved.
@@ -55,7 +55,9 @@ class BoxTree {
   void setRests(const SceneBoxes& boxes, std::size_t record);
   void addLeaves();
   void measure();
+  bool isGone(std::size_t record) const { return box_of_record_[record] == BoxChanges::kGone; }
   double metInVain() const;
+  void setBlocks();
   void dropAppended();
   bool moveBoxes(const SceneBoxes& boxes, const BoxChanges& changes);
   void refit();

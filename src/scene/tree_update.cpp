@@ -19,7 +19,7 @@ constexpr double kWorse = 1.5;
 }  // namespace
 
 std::optional<BoxTree> BoxTree::updated(const SceneBoxes& boxes, const BoxChanges& changes) const {
-  if (levels_.size() < 2 || !blocks_.empty() || !left_out_.empty()) {
+  if (levels_.size() < 2 || !left_out_.empty()) {
     return std::nullopt;
   }
   const std::size_t most = boxes.size() / kStrangers;
@@ -70,6 +70,7 @@ std::optional<BoxTree> BoxTree::updated(const SceneBoxes& boxes, const BoxChange
   if (!(tree.cost_ <= kWorse * built_cost_)) {
     return std::nullopt;
   }
+  tree.setBlocks();
   return tree;
 }
 

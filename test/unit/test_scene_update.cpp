@@ -153,20 +153,44 @@ std::vector<Box> boxesWithin(Sampler& sampler, std::size_t count, double spread,
 
 /// Turned boxes that overlap so much that the kernels compare them themselves though they make more
 /// than a list.
+std::vector<Box> heapOf(Sampler& sampler, std::size_t count) {
+  std::vector<Box> heap;
+  while (heap.size() < count) {
+    heap.emplace_back(
+        OrientedBox{sampler.vector(-6.0, 6.0), sampler.rotation(), sampler.vector(2.0, 6.0)});
+  }
+  return heap;
+}
+
 TEST(SceneUpdate, HeapedBoxesAreWhereTheyMovedTo) {
   Sampler sampler(8);
-  for (const std::size_t count : {160, 400}) {
-    std::vector<Box> heap;
-    while (heap.size() < count) {
-      heap.emplace_back(
-          OrientedBox{sampler.vector(-6.0, 6.0), sampler.rotation(), sampler.vector(2.0, 6.0)});
-    }
-    Scene scene(heap);
-    for (int step = 0; step < 12; ++step) {
-      Next next = nextOf(sampler, scene.boxes(), step % 3 == 0 ? 0.01 : 0.0, 0.3, 2.0, 0);
+  std::size_t refitted = 0;
+  for (const std::size_t count : {160, 400, 1024}) {
+    Scene scene(heapOf(sampler, count));
+    for (int step = 0; step < 8; ++step) {
+      const bool is_other = step % 3 == 0;
+      Next next = nextOf(sampler, scene.boxes(), is_other ? 0.01 : 0.0, 0.3, 2.0, is_other ? 3 : 0);
       scene = scene.updated(next.boxes, next.previous);
+      refitted += scene.update().rebuilt ? 0 : 1;
       expectAnswersOfNewScene(sampler, scene);
     }
+  }
+  EXPECT_GT(refitted, 15U);
+}
+
+TEST(SceneUpdate, ScatteredBoxesBecomeAHeapAndAreScatteredAgain) {
+  Sampler sampler(10);
+  const std::vector<Box> heap = heapOf(sampler, 300);
+  std::vector<Box> scattered = heap;
+  std::vector<std::size_t> previous;
+  for (Box& box : scattered) {
+    previous.push_back(previous.size());
+    std::get<OrientedBox>(box).half_extents *= 0.2;
+  }
+  Scene scene(scattered);
+  for (const std::vector<Box>& next : {heap, scattered, heap}) {
+    scene = scene.updated(next, previous);
+    expectAnswersOfNewScene(sampler, scene);
   }
 }
 
