@@ -34,6 +34,7 @@ namespace avx2 {
 #include "kernels/generic/ray_in_double.h"
 #include "kernels/generic/unusual_ray.h"
 #include "kernels/generic/box_times.h"
+#include "kernels/generic/box_distance.h"
 #include "kernels/generic/blocks.h"
 #include "kernels/generic/short_trees.h"
 #include "kernels/generic/search_blocks.h"
@@ -43,7 +44,6 @@ namespace avx2 {
 #include "kernels/generic/rays_in_lanes.h"
 #include "kernels/generic/list_together.h"
 #include "kernels/generic/tree_together.h"
-#include "kernels/generic/box_distance.h"
 #include "kernels/generic/nearest.h"
 #include "kernels/generic/leaf_distances.h"
 #include "kernels/generic/nearest_one.h"
@@ -61,9 +61,11 @@ const Kernels kAvx2 = {"avx2",
                        avx2::prefersBlocks,
                        avx2::closest,
                        avx2::any,
+                       avx2::anyWithin,
                        avx2::closestTogether,
                        avx2::anyTogether,
                        avx2::anyOfSegmentsTogether,
+                       avx2::anyWithinTogether,
                        avx2::all,
                        avx2::nearest,
                        avx2::nearestOne,

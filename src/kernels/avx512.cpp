@@ -35,6 +35,7 @@ namespace avx512 {
 #include "kernels/generic/ray_in_double.h"
 #include "kernels/generic/unusual_ray.h"
 #include "kernels/generic/box_times.h"
+#include "kernels/generic/box_distance.h"
 #include "kernels/generic/blocks.h"
 #include "kernels/generic/short_trees.h"
 #include "kernels/generic/search_blocks.h"
@@ -44,7 +45,6 @@ namespace avx512 {
 #include "kernels/generic/rays_in_lanes.h"
 #include "kernels/generic/list_together.h"
 #include "kernels/generic/tree_together.h"
-#include "kernels/generic/box_distance.h"
 #include "kernels/generic/nearest.h"
 #include "kernels/generic/leaf_distances.h"
 #include "kernels/generic/nearest_one.h"
@@ -62,9 +62,11 @@ const Kernels kAvx512 = {"avx512",
                          avx512::prefersBlocks,
                          avx512::closest,
                          avx512::any,
+                         avx512::anyWithin,
                          avx512::closestTogether,
                          avx512::anyTogether,
                          avx512::anyOfSegmentsTogether,
+                         avx512::anyWithinTogether,
                          avx512::all,
                          avx512::nearest,
                          avx512::nearestOne,

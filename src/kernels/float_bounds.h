@@ -22,6 +22,9 @@ constexpr double kFlat = 2.1;
 constexpr double kBlock = 0x1p-19;
 /// And how far inward, so that what is in between is certainly in the box: 41u.
 constexpr double kInBlock = 0x1p-18;
+/// Radii, as planes are moved outward by them: three of one are added to S, and 27u of one to the
+/// error of bounds, 57u to that of blocks, and what a float rounds it by.
+constexpr double kWithin = 1.0 + 0x1p-16;
 /// Numbers that are rounded to float upward by it.
 constexpr double kUp = 1.0 + 0x1p-20;
 /// More than what is lost where floats underflow.

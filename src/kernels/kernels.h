@@ -29,6 +29,12 @@ struct Kernels {
   /// are left in `found`, or were taken.
   Answer (*any)(const SceneView&, const RayQuery&, Found& found);
 
+  /// Whether a box is within the radius of a segment, certainly. Where that is not clear, the
+  /// segment is not taken.
+  ///
+  /// @pre 0 < radius <= kLargestRadius
+  Answer (*any_within)(const SceneView&, const RayQuery&, Found& found);
+
   /// The same of many rays, several of them at a time: what one waits for, or looks up, serves
   /// others. They call deliver() once for each that meets a box or may, in any order, and for no
   /// other.
@@ -36,6 +42,7 @@ struct Kernels {
   Together any_together;
   /// Of segments: their parameter ends at 1.
   Together any_of_segments_together;
+  Together any_within_together;
 
   /// Finds all boxes that may be met.
   Answer (*all)(const SceneView&, const RayQuery&, Found& found);

@@ -19,6 +19,7 @@ namespace portable {
 #include "kernels/generic/ray_in_double.h"
 #include "kernels/generic/unusual_ray.h"
 #include "kernels/generic/box_times.h"
+#include "kernels/generic/box_distance.h"
 #include "kernels/generic/blocks.h"
 #include "kernels/generic/short_trees.h"
 #include "kernels/generic/search_blocks.h"
@@ -28,7 +29,6 @@ namespace portable {
 #include "kernels/generic/rays_in_lanes.h"
 #include "kernels/generic/list_together.h"
 #include "kernels/generic/tree_together.h"
-#include "kernels/generic/box_distance.h"
 #include "kernels/generic/nearest.h"
 // clang-format on
 }  // namespace portable
@@ -37,9 +37,11 @@ const Kernels kPortable = {"portable",
                            portable::prefersBlocks,
                            portable::closest,
                            portable::any,
+                           portable::anyWithin,
                            portable::closestTogether,
                            portable::anyTogether,
                            portable::anyOfSegmentsTogether,
+                           portable::anyWithinTogether,
                            portable::all,
                            portable::nearest,
                            nullptr,

@@ -126,7 +126,14 @@ struct RayQuery {
   double max_range;  ///< [m] a box that is certainly entered beyond it is none
   /// Boxes to look at, a bit each by their number in the scene, or null.
   const std::uint64_t* mask;
+  double radius;  ///< [m] of a segment: see Kernels::any_within
 };
+
+/// Of a query about a radius, at most.
+constexpr double kLargestRadius = 0x1p40;
+inline bool isForKernels(double radius) {
+  return radius > 0.0 && radius <= kLargestRadius;
+}
 
 constexpr double kFarthestOrigin = 0x1p60;
 
@@ -189,10 +196,11 @@ struct RayQueries {
   const double* max_ranges;    ///< see RayQuery
   std::size_t range_distance;  ///< from one to the next: 0 if it is the same for all
   const std::uint64_t* mask;
+  double radius;
 
   double maxRange(std::size_t i) const { return max_ranges[i * range_distance]; }
   RayQuery query(std::size_t i, bool is_segment) const {
-    return {rays + 6 * i, rays + 6 * i + 3, is_segment, maxRange(i), mask};
+    return {rays + 6 * i, rays + 6 * i + 3, is_segment, maxRange(i), mask, radius};
   }
 };
 

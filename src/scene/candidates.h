@@ -18,12 +18,21 @@ namespace box_query {
 
 /// What a kernel is asked about a ray or a segment.
 inline kernels::RayQuery rayQuery(const Ray& ray, double max_range, const BoxMask* mask) {
-  return {ray.origin.data(), ray.direction.data(), false, max_range,
-          mask != nullptr ? mask->words() : nullptr};
+  return {ray.origin.data(),
+          ray.direction.data(),
+          false,
+          max_range,
+          mask != nullptr ? mask->words() : nullptr,
+          0.0};
 }
-inline kernels::RayQuery rayQuery(const Segment& segment, double max_range, const BoxMask* mask) {
-  return {segment.start.data(), segment.end.data(), true, max_range,
-          mask != nullptr ? mask->words() : nullptr};
+inline kernels::RayQuery rayQuery(const Segment& segment, double max_range, const BoxMask* mask,
+                                  double radius = 0.0) {
+  return {segment.start.data(),
+          segment.end.data(),
+          true,
+          max_range,
+          mask != nullptr ? mask->words() : nullptr,
+          radius};
 }
 
 /// The same ray with a direction of about 1, times an exact power of two: it meets the same boxes

@@ -29,7 +29,8 @@ inline const double* numbersOf(const Segment* segments) {
 template <typename Impl, typename Linear, typename Answer, typename Take>
 void askTogether(const Impl& scene, kernels::Together together, const Linear* linear,
                  std::size_t count, Answer* answers, const Answer& miss,
-                 const MaxRanges& max_ranges, const BoxMask* mask, Take&& take) {
+                 const MaxRanges& max_ranges, const BoxMask* mask, Take&& take,
+                 double radius = 0.0) {
   struct Context {
     Take& take;
     std::size_t first;
@@ -44,9 +45,12 @@ void askTogether(const Impl& scene, kernels::Together together, const Linear* li
   for (std::size_t first = 0; first < count; first += kQueries) {
     const std::size_t size = std::min(kQueries, count - first);
     std::fill_n(answers + first, size, miss);
-    const kernels::RayQueries queries{numbersOf(linear + first), size, max_ranges.from(first),
+    const kernels::RayQueries queries{numbersOf(linear + first),
+                                      size,
+                                      max_ranges.from(first),
                                       max_ranges.distance(),
-                                      mask != nullptr ? mask->words() : nullptr};
+                                      mask != nullptr ? mask->words() : nullptr,
+                                      radius};
     Context context{take, first, {}};
     together(scene.view, queries, deliver, &context, work_of_thread);
     if (!scene.tree.left_out().empty()) {
@@ -103,19 +107,37 @@ void Scene::castAny(const Ray* rays, std::size_t count, std::uint8_t* any, MaxRa
 
 void Scene::isClear(const Segment* segments, std::size_t count, std::uint8_t* clear, double radius,
                     const BoxMask* mask) const noexcept {
-  if (radius != 0.0) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  if (radius == 0.0) {
+    askTogether(
+        *impl_, impl_->kernels.any_of_segments_together, segments, count, clear, std::uint8_t{1},
+        kInf, mask, [&](std::size_t i, kernels::Answer answer, const kernels::Found* found) {
+          const Decided decided(answer, found, impl_->tree);
+          clear[i] =
+              !decided.is_met && (decided.is_none || isClear(segments[i], 0.0, mask)) ? 1 : 0;
+        });
+    return;
+  }
+  const auto decide = [&](std::size_t i) {
+    clear[i] = impl_->areFartherThan(segments[i], radius, mask) ? 1 : 0;
+  };
+  if (!kernels::isForKernels(radius)) {
     for (std::size_t i = 0; i < count; ++i) {
-      clear[i] = isClear(segments[i], radius, mask) ? 1 : 0;
+      decide(i);
     }
     return;
   }
-  askTogether(*impl_, impl_->kernels.any_of_segments_together, segments, count, clear,
-              std::uint8_t{1}, std::numeric_limits<double>::infinity(), mask,
-              [&](std::size_t i, kernels::Answer answer, const kernels::Found* found) {
-                const Decided decided(answer, found, impl_->tree);
-                clear[i] =
-                    !decided.is_met && (decided.is_none || isClear(segments[i], 0.0, mask)) ? 1 : 0;
-              });
+  askTogether(
+      *impl_, impl_->kernels.any_within_together, segments, count, clear, std::uint8_t{1}, kInf,
+      mask,
+      [&](std::size_t i, kernels::Answer answer, const kernels::Found* /*found*/) {
+        if (answer == kernels::Answer::kYes) {
+          clear[i] = 0;
+        } else {
+          decide(i);
+        }
+      },
+      radius);
 }
 
 }  // namespace box_query

@@ -80,6 +80,19 @@ bool Scene::isClear(const Segment& segment, double radius, const BoxMask* mask) 
   if (radius == 0.0 && segment.start != segment.end) {
     return !impl_->meetsAny(segment, std::numeric_limits<double>::infinity(), mask);
   }
+  if (kernels::isForKernels(radius)) {
+    constexpr double kInf = std::numeric_limits<double>::infinity();
+    kernels::Found found(&work_of_thread);
+    const kernels::Answer answer =
+        impl_->kernels.any_within(impl_->view, rayQuery(segment, kInf, mask, radius), found);
+    // As a rule the kernel has decided everything.
+    if (answer == kernels::Answer::kYes) {
+      return false;
+    }
+    if (answer == kernels::Answer::kNone && impl_->tree.left_out().empty()) {
+      return true;
+    }
+  }
   return impl_->areFartherThan(segment, radius, mask);
 }
 

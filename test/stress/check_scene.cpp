@@ -194,6 +194,10 @@ class SceneCheck {
     std::vector<std::uint8_t> clear(segments.size());
     scene_.clearance(segments.data(), segments.size(), clearances.data(), mask());
     scene_.isClear(segments.data(), segments.size(), clear.data(), 0.0, mask());
+    const double distance = scene_.clearance(segments[0], mask()).distance;
+    const double radius = std::isfinite(distance) ? random_.nudged(distance, 1) : 1.0;
+    std::vector<std::uint8_t> farther(segments.size());
+    scene_.isClear(segments.data(), segments.size(), farther.data(), radius, mask());
     for (std::size_t i = 0; i < segments.size(); ++i) {
       component_ = &sample_.components[i / 2 % sample_.components.size()];
       const Clearance alone = scene_.clearance(segments[i], mask());
@@ -204,6 +208,9 @@ class SceneCheck {
              "clearance together", c.distance, alone.distance);
       const bool is_clear = scene_.isClear(segments[i], 0.0, mask());
       expect((clear[i] != 0) == is_clear, "isClear together", clear[i], is_clear);
+      const bool is_apart = scene_.isClear(segments[i], radius, mask());
+      expect((farther[i] != 0) == is_apart, "isClear together (radius " + hex(radius) + ")",
+             farther[i], is_apart);
     }
   }
 

@@ -35,7 +35,7 @@ std::vector<Delivered> ask(kernels::Together together, const kernels::SceneView&
   std::vector<Delivered> all(rays.size());
   kernels::Work work;
   together(
-      view, {rays[0].origin.data(), rays.size(), ranges.data(), 1, nullptr},
+      view, {rays[0].origin.data(), rays.size(), ranges.data(), 1, nullptr, 0.0},
       [](void* context, std::size_t query, kernels::Answer answer, const kernels::Found* found) {
         Delivered& d = (*static_cast<std::vector<Delivered>*>(context))[query];
         ++d.times;

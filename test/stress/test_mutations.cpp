@@ -200,6 +200,11 @@ TEST(Mutations, ShrunkBoundsOfDistancesInFloatAreNoticed) {
   EXPECT_GT(wrongScenes("scene_near_ties", 400), 0U);
 }
 
+TEST(Mutations, BoundsThatAreMovedOutwardByLessThanTheRadiusAreNoticed) {
+  const Spoilt<double> spoilt(float_bounds::kWithin, 1.0 - 0x1p-10);
+  EXPECT_GT(wrongScenes("scene_near_ties", 400), 0U);
+}
+
 TEST(Mutations, EstimatesOfRootsThatAreTakenForRootsAreNoticed) {
   const Spoilt<double> spoilt(float_bounds::kRoughRoot, 0.0);
   EXPECT_GT(wrongScenes("scene_near_ties", 400), 0U);

@@ -54,10 +54,12 @@ struct BlockRay {
   alignas(16) float origin[4];
   alignas(16) float direction[4];
   float pad;
+  float outward;  ///< the pad, and the radius of the query
   float end;
 };
 
 /// @return whether the ray is a usual one
+template <bool kWithin>
 [[gnu::always_inline]] static inline bool prepare(const SceneView& view, const RayQuery& query,
                                                   BlockRay& ray) {
   UsualRay usual;
@@ -69,6 +71,7 @@ struct BlockRay {
   ray.pad = firstLane(sumOf3(magnitude(usual.origin))) *
                 static_cast<float>(bounds::kBlock * bounds::kUp) +
             static_cast<float>(bounds::kFloatUnderflow);
+  ray.outward = kWithin ? ray.pad + outwardBy(query.radius) : ray.pad;
   ray.end = endOf(query, usual);
   return true;
 }
@@ -89,7 +92,7 @@ template <typename Lanes>
                                                          const BlockRay& ray,
                                                          BlockTimes<Lanes>& times) {
   const auto slots = [first](const float* all) { return loadLanes<Lanes>(all + first); };
-  const Lanes pad = allLanes<Lanes>(ray.pad);
+  const Lanes pad = allLanes<Lanes>(ray.outward);
   Lanes w[3];
   Lanes d[3];
   for (int j = 0; j < 3; ++j) {

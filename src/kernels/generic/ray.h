@@ -105,9 +105,16 @@ static inline bool clipToScene(const SceneView& view, FloatRay& f) {
   return f.begin_s <= f.end_s;
 }
 
+/// How far planes are moved outward for what lies within a radius.
+static inline float outwardBy(double radius) {
+  return static_cast<float>(radius * bounds::kWithin) + static_cast<float>(bounds::kFloatUnderflow);
+}
+
 /// Prepares a usual ray for bounds.
+/// @param kWithin whether what lies within the radius of the query is met too
 /// @param in_stretches whether it goes down the tree a stretch at a time until its end
 /// @return kNotTaken if it is not a usual one
+template <bool kWithin>
 [[gnu::always_inline]] static inline Outcome prepareUsual(const SceneView& view,
                                                           const RayQuery& query, FloatRay& f,
                                                           bool in_stretches) {
@@ -116,8 +123,11 @@ static inline bool clipToScene(const SceneView& view, FloatRay& f) {
     return Outcome::kNotTaken;
   }
   const auto pad = static_cast<float>(bounds::kApart * bounds::kUp);
-  const Float4 apart = withSignOf(
-      multiplyAdd(sumOf3(magnitude(ray.origin)), quad(pad), quad(view.apart)), ray.direction);
+  Float4 apart = multiplyAdd(sumOf3(magnitude(ray.origin)), quad(pad), quad(view.apart));
+  if constexpr (kWithin) {
+    apart = apart + quad(outwardBy(query.radius));
+  }
+  apart = withSignOf(apart, ray.direction);
   const Float4 steep = larger(magnitude(ray.direction), quad(kFlattest));
   const Float4 inverse = quad(1.0F) / withSignOf(steep, ray.direction);
   store(f.inverse, inverse);

@@ -5,6 +5,8 @@
 /// What all of them have in common.
 class RayVisit {
  public:
+  static constexpr bool kWithin = false;
+
   RayVisit() = default;
   RayVisit(const SceneView& view, const RayQuery& query, Found& into, FloatRay& ray)
       : found(&into), view_(&view), query_(&query), in_float_(&ray), end_s_(ray.end_s) {}
@@ -22,6 +24,9 @@ class RayVisit {
     return is_taken_;
   }
 
+  /// Whether nothing was found so far.
+  bool isEmpty() const { return found->count == 0; }
+
   /// Sets what begin() prepares, where GCC does not see that nothing uses it before and warns.
   void clear() { ray_ = RayInDouble{}; }
 
@@ -36,14 +41,23 @@ class RayVisit {
   [[gnu::always_inline]] bool mayEnter(std::uint32_t record, double bound,
                                        Candidate& candidate) const {
     const std::uint32_t box = view_->box_of_record[record];
+    if (!isLookedAt(record)) {
+      return false;
+    }
+    const Times t = timesOf(view_->records[record], ray_);
+    candidate = {box, t.enter_hi <= t.exit_lo, t.enter_lo, t.enter_hi, t.exit_hi};
+    return t.enter_lo <= t.exit_hi && t.enter_lo <= bound;
+  }
+
+  /// Whether the box of a record is looked at, which is counted.
+  [[gnu::always_inline]] bool isLookedAt(std::uint32_t record) const {
+    const std::uint32_t box = view_->box_of_record[record];
     if (query_->mask != nullptr && ((query_->mask[box / 64] >> (box % 64)) & 1U) == 0) {
       return false;
     }
     ++found->work->boxes;
     found->work->turned_boxes += view_->records[record].isAligned() ? 0 : 1;
-    const Times t = timesOf(view_->records[record], ray_);
-    candidate = {box, t.enter_hi <= t.exit_lo, t.enter_lo, t.enter_hi, t.exit_hi};
-    return t.enter_lo <= t.exit_hi && t.enter_lo <= bound;
+    return true;
   }
 
   bool isFull() const { return found->count == Found::kCapacity; }
@@ -218,6 +232,39 @@ class AnyVisit : public RayVisit {
   bool is_met_ = false;
 };
 
+/// A search for any box within the radius of a segment.
+class WithinVisit : public RayVisit {
+ public:
+  static constexpr bool kAnyWillDo = true;
+  static constexpr bool kWithin = true;
+
+  using RayVisit::RayVisit;
+
+  static bool begin() { return true; }
+  bool isEmpty() const { return !is_open_; }
+
+  [[gnu::always_inline]] bool operator()(std::uint32_t record) {
+    if (isLookedAt(record)) {
+      const double* p = query_->origin;
+      const double* q = query_->direction;
+      const SegmentQuery segment = {{p[0], p[1], p[2]}, {q[0], q[1], q[2]}, 0.0, false, nullptr};
+      NearBox near;
+      estimate(view_->records[record], segment, near);
+      is_within_ = near.upper <= query_->radius;
+      is_open_ = is_open_ || near.lower <= query_->radius;
+    }
+    return !is_within_;
+  }
+
+  Answer answer() const {
+    return is_within_ ? Answer::kYes : is_open_ ? Answer::kNotTaken : Answer::kNone;
+  }
+
+ private:
+  bool is_within_ = false;
+  bool is_open_ = false;  ///< floats and doubles do not say of some box whether it is
+};
+
 /// A search for all boxes.
 class AllVisit : public RayVisit {
  public:
@@ -234,12 +281,12 @@ class AllVisit : public RayVisit {
 };
 
 /// Prepares a ray for bounds: ask(ray) answers, where it is to be compared with any.
-template <typename Ask>
+template <typename Visit, typename Ask>
 [[gnu::always_inline]] static inline Answer askPrepared(const SceneView& view,
                                                         const RayQuery& query, bool in_stretches,
                                                         const Ask& ask) {
   FloatRay ray;
-  const Outcome outcome = prepare(view, query, ray, in_stretches);
+  const Outcome outcome = prepare<Visit::kWithin>(view, query, ray, in_stretches);
   if (outcome != Outcome::kReady) {
     return outcome == Outcome::kMiss ? Answer::kNone : Answer::kNotTaken;
   }
@@ -252,14 +299,15 @@ template <typename Ask>
 template <typename Visit>
 [[gnu::noinline]] static Answer searchList(const SceneView& view, const RayQuery& query,
                                            Found& found) {
-  return askPrepared(view, query, false,
-                     [&](FloatRay& ray) { return searchList<Visit>(view, query, found, ray); });
+  return askPrepared<Visit>(view, query, false, [&](FloatRay& ray) {
+    return searchList<Visit>(view, query, found, ray);
+  });
 }
 
 template <typename Visit>
 [[gnu::noinline]] static Answer searchTwoLevels(const SceneView& view, const RayQuery& query,
                                                 Found& found) {
-  return askPrepared(view, query, false, [&](FloatRay& ray) {
+  return askPrepared<Visit>(view, query, false, [&](FloatRay& ray) {
     Visit visit(view, query, found, ray);
     visit.clear();
     visitTwoLevels(view, ray, visit);
@@ -270,7 +318,7 @@ template <typename Visit>
 template <typename Visit>
 [[gnu::noinline]] static Answer searchTree(const SceneView& view, const RayQuery& query,
                                            Found& found) {
-  return askPrepared(view, query, true, [&](FloatRay& ray) {
+  return askPrepared<Visit>(view, query, true, [&](FloatRay& ray) {
     Visit visit(view, query, found, ray);
     descendInStretches(view, ray, visit);
     return visit.answer();
@@ -282,7 +330,7 @@ template <typename Visit>
 static Answer search(const SceneView& view, const RayQuery& query, Found& found) {
   if (view.boxes_in_blocks > 0) {
     BlockRay ray;
-    if (prepare(view, query, ray)) {
+    if (prepare<Visit::kWithin>(view, query, ray)) {
       return searchBlocks<Visit>(view, query, found, ray);
     }
   }
@@ -306,11 +354,15 @@ static Answer any(const SceneView& view, const RayQuery& query, Found& found) {
   return search<AnyVisit>(view, query, found);
 }
 
+static Answer anyWithin(const SceneView& view, const RayQuery& query, Found& found) {
+  return search<WithinVisit>(view, query, found);
+}
+
 static Answer all(const SceneView& view, const RayQuery& query, Found& found) {
   if (view.depth == 0) {
     return Answer::kNone;
   }
-  return askPrepared(view, query, false, [&](FloatRay& ray) {
+  return askPrepared<AllVisit>(view, query, false, [&](FloatRay& ray) {
     AllVisit visit(view, query, found, ray);
     descend(view, ray, visit);
     return visit.answer();

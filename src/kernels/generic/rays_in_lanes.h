@@ -10,9 +10,10 @@ struct RaysInLanes {
 };
 
 /// @param rays sixteen of them
-template <bool kAreSegments>
+/// @param outward how far bounds are moved outward, where kWithin
+template <bool kAreSegments, bool kWithin>
 static inline void prepareLanes(const SceneView& view, const double* rays, Float16 max_range,
-                                RaysInLanes& lanes) {
+                                float outward, RaysInLanes& lanes) {
   const Float16 zero = all16(0.0F);
   Float16 o[3];
   Float16 d[3];
@@ -24,9 +25,12 @@ static inline void prepareLanes(const SceneView& view, const double* rays, Float
   // (Nothing is said of NaN either.)
   lanes.fit = notAbove(largest(o), all16(kUsualDistance)) & notAbove(size, all16(kUsualLength)) &
               notAbove(all16(1.0F / kUsualLength), size);
-  const Float16 apart =
+  Float16 apart =
       multiplyAdd(magnitude(o[0]) + magnitude(o[1]) + magnitude(o[2]),
                   all16(static_cast<float>(bounds::kApart * bounds::kUp)), all16(view.apart));
+  if constexpr (kWithin) {
+    apart = apart + all16(outward);
+  }
   Float16 squared = zero;
   for (int i = 0; i < 3; ++i) {
     const Float16 steep = larger(magnitude(d[i]), all16(kFlattest));
@@ -152,8 +156,9 @@ class LaneSearch {
   std::uint32_t takeUp(std::size_t first, int count) {
     first_ = first;
     begun_ = 0;
-    prepareLanes<What::kAreSegments>(view_, raysFrom(first, count), rangesFrom(first, count),
-                                     lanes_);
+    prepareLanes<What::kAreSegments, Visit::kWithin>(view_, raysFrom(first, count),
+                                                     rangesFrom(first, count),
+                                                     outwardBy(queries_.radius), lanes_);
     store16(ends_, lanes_.end);
     return lanes_.fit & ((1U << count) - 1);
   }

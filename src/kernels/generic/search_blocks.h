@@ -188,7 +188,7 @@ template <typename Visit>
     return searchFewBlocks<Visit, BlockLanes, 3>(view, query, found, ray);
   }
   FloatRay in_scene;
-  return prepareUsual(view, query, in_scene, true) == Outcome::kMiss
+  return prepareUsual<Visit::kWithin>(view, query, in_scene, true) == Outcome::kMiss
              ? Answer::kNone
              : searchManyBlocks<Visit, BlockLanes>(view, query, found, ray);
 }

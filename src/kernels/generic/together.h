@@ -169,7 +169,7 @@ static void searchRests(const SceneView& view, const RayQueries& queries, const 
       while ((under_way & (1U << i)) == 0 && next < count) {
         const RestOfRay& rest = rests[next++];
         const RayQuery query = queries.query(rest.number, What::kAreSegments);
-        const Outcome outcome = prepare(view, query, c.in_float, true);
+        const Outcome outcome = prepare<Visit::kWithin>(view, query, c.in_float, true);
         to.begin(view, query, rest.number, c);
         if (outcome == Outcome::kReady && c.visit.begin()) {
           const float begun =

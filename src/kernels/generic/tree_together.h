@@ -37,7 +37,7 @@ class TreeSearch : LaneSearch<What> {
       const bool is_begun = (begun_ >> ray & 1) != 0;
       if (!isDone(ray, is_begun, whole[ray])) {
         // (What was found is found again, with its first stretch.)
-        const bool is_empty = !is_begun || rays_[ray].found.count == 0;
+        const bool is_empty = !is_begun || rays_[ray].visit.isEmpty();
         unfinished.rests[unfinished.count++] = {
             static_cast<std::uint32_t>(first) + static_cast<std::uint32_t>(ray),
             is_empty ? in_memory_.end[ray] : 0.0F};
@@ -189,6 +189,11 @@ static void closestTogether(const SceneView& view, const RayQueries& queries, De
 static void anyTogether(const SceneView& view, const RayQueries& queries, Deliver deliver,
                         void* context, Work& work) {
   askTogether<Ask<AnyVisit, false>>(view, queries, {deliver, context, work});
+}
+
+static void anyWithinTogether(const SceneView& view, const RayQueries& queries, Deliver deliver,
+                              void* context, Work& work) {
+  askTogether<Ask<WithinVisit, true>>(view, queries, {deliver, context, work});
 }
 
 static void anyOfSegmentsTogether(const SceneView& view, const RayQueries& queries, Deliver deliver,

@@ -66,9 +66,10 @@ static inline Double4 doublesOf(const float* three) {
   return Outcome::kReady;
 }
 
-/// Prepares any ray for the bounds of a scene.
+/// Prepares any ray for the bounds of a scene; with a radius, a usual one.
+template <bool kWithin>
 [[gnu::always_inline]] static inline Outcome prepare(const SceneView& view, const RayQuery& query,
                                                      FloatRay& f, bool in_stretches) {
-  const Outcome usual = prepareUsual(view, query, f, in_stretches);
-  return usual == Outcome::kNotTaken ? prepareUnusual(view, query, f) : usual;
+  const Outcome usual = prepareUsual<kWithin>(view, query, f, in_stretches);
+  return usual == Outcome::kNotTaken && !kWithin ? prepareUnusual(view, query, f) : usual;
 }
