@@ -53,13 +53,15 @@ enum class Question {
   kAny30,
   kAll30,
   kSegment,
+  kWithin,
   kClearance,
   kBuild,
   kUpdate
 };
-constexpr Question kQuestions[] = {Question::kClosest30, Question::kClosest, Question::kRounded30,
-                                   Question::kAny30,     Question::kAll30,   Question::kSegment,
-                                   Question::kClearance, Question::kBuild,   Question::kUpdate};
+constexpr Question kQuestions[] = {Question::kClosest30, Question::kClosest,   Question::kRounded30,
+                                   Question::kAny30,     Question::kAll30,     Question::kSegment,
+                                   Question::kWithin,    Question::kClearance, Question::kBuild,
+                                   Question::kUpdate};
 const char* nameOf(Question question);
 
 /// How a question is asked: a ray a call; many rays a call on one thread; the same on one and on
@@ -67,13 +69,16 @@ const char* nameOf(Question question);
 enum class Mode { kSingle, kBatch, kThreads };
 const char* nameOf(Mode mode);
 constexpr Question kBatchQuestions[] = {Question::kClosest30, Question::kRounded30,
-                                        Question::kAny30, Question::kSegment, Question::kClearance};
+                                        Question::kAny30,     Question::kSegment,
+                                        Question::kWithin,    Question::kClearance};
 constexpr Question kThreadQuestions[] = {Question::kClosest30, Question::kClearance};
 
 /// How far closest, any and all queries look [m], and the lengths of segments.
 constexpr double kRange = 30.0;
 constexpr double kSegmentLength = 10.0;
 constexpr double kPathLength = 2.0;
+/// How near a box may not be to a path [m].
+constexpr double kPathRadius = 0.3;
 
 inline Segment segmentAlong(const Ray& ray, double length) {
   return {ray.origin, ray.origin + length * ray.direction};

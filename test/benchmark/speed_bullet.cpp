@@ -46,7 +46,7 @@ class Bullet final : public SpeedMethod {
     broadphase_.optimize();  // Most of the time of the build, for up to a half of a query's.
   }
 
-  bool canAnswer(Question /*question*/) const override { return true; }
+  bool canAnswer(Question question) const override { return question != Question::kWithin; }
   SpeedAnswer ask(Question question, const Ray& ray) const override {
     if (question == Question::kClearance) {
       return nearest(segmentAlong(ray, kPathLength));

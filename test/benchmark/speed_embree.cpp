@@ -172,7 +172,8 @@ SpeedAnswer Embree::ask(Question question, const Ray& ray) const {
 }
 
 std::vector<std::string> Embree::batchWays(Question question) const {
-  if (question == Question::kAll30 || question == Question::kClearance) {
+  if (question == Question::kAll30 || question == Question::kWithin ||
+      question == Question::kClearance) {
     return {};
   }
   return {"stream", "packets"};

@@ -109,7 +109,7 @@ class EmbreeBoxes final : public Embree {
     commit(geometry);
   }
 
-  bool canAnswer(Question /*question*/) const override { return true; }
+  bool canAnswer(Question question) const override { return question != Question::kWithin; }
   SpeedAnswer ask(Question question, const Ray& ray) const override {
     return question == Question::kClearance ? nearest(segmentAlong(ray, kPathLength))
                                             : Embree::ask(question, ray);

@@ -37,7 +37,8 @@ class EmbreeTriangles final : public Embree {
   }
 
   bool canAnswer(Question question) const override {
-    return question != Question::kClearance && question != Question::kAll30;
+    return question != Question::kClearance && question != Question::kAll30 &&
+           question != Question::kWithin;
   }
   std::uint64_t pass(Question question, const std::vector<Ray>& rays) const override {
     return passOf<Embree>(*this, question, rays);

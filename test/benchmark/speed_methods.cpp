@@ -32,6 +32,8 @@ class Ours final : public SpeedMethod {
         return allOf(scene_.findAll(segmentAlong(ray, kRange)).size());
       case Question::kSegment:
         return {scene_.isClear(segmentAlong(ray, kSegmentLength), 0.0) ? kNoBox : 0};
+      case Question::kWithin:
+        return {scene_.isClear(segmentAlong(ray, kPathLength), kPathRadius) ? kNoBox : 0};
       case Question::kClearance: {
         const Clearance clearance = scene_.clearance(segmentAlong(ray, kPathLength));
         return {clearance.box, clearance.distance};
@@ -71,8 +73,11 @@ class Ours final : public SpeedMethod {
              [](std::uint8_t any) { return SpeedAnswer{any != 0 ? 0 : kNoBox}; });
         break;
       case Question::kSegment:
-        take(isClearEach(scene_, segments(rays, kSegmentLength), 0.0, options), answers,
-             [](std::uint8_t clear) { return SpeedAnswer{clear != 0 ? kNoBox : 0}; });
+        take(isClearEach(scene_, segments(rays, kSegmentLength), 0.0, options), answers, notClear);
+        break;
+      case Question::kWithin:
+        take(isClearEach(scene_, segments(rays, kPathLength), kPathRadius, options), answers,
+             notClear);
         break;
       case Question::kClearance:
         take(clearanceEach(scene_, segments(rays, kPathLength), options), answers,
@@ -86,6 +91,7 @@ class Ours final : public SpeedMethod {
   }
 
  private:
+  static SpeedAnswer notClear(std::uint8_t clear) { return {clear != 0 ? kNoBox : 0}; }
   static SpeedAnswer answerOf(const Hit& hit) { return {hit.box, hit.hit ? hit.range : 0.0}; }
   /// As a caller has them: those of the last call stay.
   const std::vector<Segment>& segments(const std::vector<Ray>& rays, double length) const {
@@ -128,6 +134,8 @@ const char* nameOf(Question question) {
       return "all, 30 m";
     case Question::kSegment:
       return "segment of 10 m";
+    case Question::kWithin:
+      return "within 0.3 m of 2 m";
     case Question::kClearance:
       return "clearance of 2 m";
     case Question::kBuild:

@@ -48,7 +48,9 @@ class Ode final : public SpeedMethod {
   Ode(const Ode&) = delete;
   Ode& operator=(const Ode&) = delete;
 
-  bool canAnswer(Question question) const override { return question != Question::kClearance; }
+  bool canAnswer(Question question) const override {
+    return question != Question::kClearance && question != Question::kWithin;
+  }
   SpeedAnswer ask(Question question, const Ray& ray) const override {
     dGeomRaySetLength(ray_, lengthOf(question, extent_, ray.origin));
     dGeomRaySet(ray_, ray.origin.x(), ray.origin.y(), ray.origin.z(), ray.direction.x(),

@@ -37,6 +37,9 @@ class Scan final : public SpeedMethod {
     if (question == Question::kClearance) {
       return nearest(slabComponent<double>(segmentAlong(ray, kPathLength)));
     }
+    if (question == Question::kWithin) {
+      return {isWithin(slabComponent<double>(segmentAlong(ray, kPathLength))) ? 0 : kNoBox};
+    }
     SlabComponent<double> component = slabComponent<double>(ray);
     component.t_max = endOf(question);
     if (question == Question::kAll30) {
@@ -63,6 +66,11 @@ class Scan final : public SpeedMethod {
   }
 
  private:
+  bool isWithin(const SlabComponent<double>& segment) const {
+    return std::any_of(boxes_.begin(), boxes_.end(), [&](const SlabBox<double>& box) {
+      return plainDistance(segment, box) <= kPathRadius;
+    });
+  }
   SpeedAnswer nearest(const SlabComponent<double>& segment) const {
     SpeedAnswer best{kNoBox, kInf};
     for (std::size_t i = 0; i < boxes_.size(); ++i) {

@@ -27,6 +27,7 @@ double reachOf(Question question) {
       return kInf;
     case Question::kSegment:
       return kSegmentLength;
+    case Question::kWithin:
     case Question::kClearance:
       return kPathLength;
     default:
@@ -70,6 +71,9 @@ double valueOf(Question question, const OrientedBox& box, const Ray& ray) {
   if (question == Question::kClearance) {
     return distance(segmentAlong(ray, kPathLength), box).distance;
   }
+  if (question == Question::kWithin) {
+    return isClear(segmentAlong(ray, kPathLength), box, kPathRadius) ? kInf : 0.0;
+  }
   if (question == Question::kSegment) {
     return testIntersection(segmentAlong(ray, kSegmentLength), box) ? 0.0 : kInf;
   }
@@ -86,7 +90,8 @@ bool isRightExactly(Question question, const SpeedAnswer& answer, const SpeedAns
   if (question == Question::kAll30) {
     return answer.value == truth.value;
   }
-  if (question == Question::kAny30 || question == Question::kSegment) {
+  if (question == Question::kAny30 || question == Question::kSegment ||
+      question == Question::kWithin) {
     return (answer.box == kNoBox) == (truth.box == kNoBox);
   }
   const bool has_value = question == Question::kRounded30 || question == Question::kClearance;
@@ -111,7 +116,9 @@ SpeedAnswer truthOf(Question question, const std::vector<OrientedBox>& boxes, co
   }
   SpeedAnswer truth{kNoBox, kInf};
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const double enough = question == Question::kClearance ? truth.value : 0.0;
+    const double enough = question == Question::kClearance ? truth.value
+                          : question == Question::kWithin  ? kPathRadius
+                                                           : 0.0;
     if (lowerBound(ray, reachOf(question), boxes[i]) <= enough) {
       const double value = valueOf(question, boxes[i], ray);
       if (value < truth.value) {
@@ -124,7 +131,7 @@ SpeedAnswer truthOf(Question question, const std::vector<OrientedBox>& boxes, co
 
 bool isWrong(Question question, const std::vector<OrientedBox>& boxes, const Ray& ray,
              const SpeedAnswer& answer, const SpeedAnswer& truth, bool exactly) {
-  if (exactly) {
+  if (exactly || question == Question::kWithin) {
     return !isRightExactly(question, answer, truth);
   }
   if (question == Question::kClearance) {

@@ -64,7 +64,8 @@ void expectNothingWrong(const std::vector<SpeedRow>& rows) {
     }
     EXPECT_EQ(row.method == "box_query" && row.mode == Mode::kSingle, row.work.nodes > 0);
     EXPECT_EQ(128U, row.asked);
-    EXPECT_GT(row.hits, 0U);
+    // (What is no nearer than five metres is not within a third of one of two.)
+    EXPECT_TRUE(row.hits > 0U || (row.question == Question::kWithin && row.boxes == 16));
     const bool is_ours = row.method.rfind("box_query", 0) == 0;
     const bool is_plain = row.method.rfind("double slab", 0) == 0 || row.method == "plain scan";
     if (is_ours || is_plain) {
