@@ -80,20 +80,29 @@ bool Scene::isClear(const Segment& segment, double radius, const BoxMask* mask) 
   if (radius == 0.0 && segment.start != segment.end) {
     return !impl_->meetsAny(segment, std::numeric_limits<double>::infinity(), mask);
   }
-  if (kernels::isForKernels(radius)) {
-    constexpr double kInf = std::numeric_limits<double>::infinity();
-    kernels::Found found(&work_of_thread);
-    const kernels::Answer answer =
-        impl_->kernels.any_within(impl_->view, rayQuery(segment, kInf, mask, radius), found);
-    // As a rule the kernel has decided everything.
-    if (answer == kernels::Answer::kYes) {
+  // As a rule the kernel decides everything.
+  switch (impl_->anyWithin(segment, radius, mask)) {
+    case kernels::Answer::kYes:
       return false;
-    }
-    if (answer == kernels::Answer::kNone && impl_->tree.left_out().empty()) {
+    case kernels::Answer::kNone:
       return true;
-    }
+    default:
+      return impl_->areFartherThan(segment, radius, mask);
   }
-  return impl_->areFartherThan(segment, radius, mask);
+}
+
+/// Whether any box is within the radius: kYes or kNone, or what no kernel can say.
+kernels::Answer Scene::Impl::anyWithin(const Segment& segment, double radius,
+                                       const BoxMask* mask) const {
+  if (!kernels::isForKernels(radius)) {
+    return kernels::Answer::kNotTaken;
+  }
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  kernels::Found found(&work_of_thread);
+  const kernels::Answer answer =
+      kernels.any_within(view, rayQuery(segment, kInf, mask, radius), found);
+  return answer == kernels::Answer::kNone && !tree.left_out().empty() ? kernels::Answer::kNotTaken
+                                                                      : answer;
 }
 
 /// (Not inlined, so that a segment that meets nothing needs no room for it.)
@@ -170,6 +179,9 @@ Blockage Scene::firstBlockage(const Segment& segment, double radius,
                               const BoxMask* mask) const noexcept {
   if (radius == 0.0) {
     return impl_->firstMet(segment, mask);
+  }
+  if (impl_->anyWithin(segment, radius, mask) == kernels::Answer::kNone) {
+    return {};
   }
   Blocking first;
   impl_->forEachNear(segment, radius, false, mask,

@@ -59,6 +59,7 @@ struct Scene::Impl {
                  const kernels::Found& found) const;
 
   /// Whether all boxes are farther from a segment than a radius.
+  kernels::Answer anyWithin(const Segment& segment, double radius, const BoxMask* mask) const;
   bool areFartherThan(const Segment& segment, double radius, const BoxMask* mask) const;
 
   /// Calls visit(index, bounds, estimate) for all boxes that may be within `bound` of the segment:
