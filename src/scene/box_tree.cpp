@@ -151,6 +151,8 @@ void BoxTree::measure() {
   const double free = 4.0 * volume / area;
   mean_free_path_ = std::min(std::max(free, longest / 64.0), 2.0 * longest);
   bounds_met_ = longest / free;
+  constexpr double kMostApart = 50.0;  // measured
+  is_full_ = area > kMostApart * 2.0 * static_cast<double>(around.area());
 
   cost_ = 0.0;
   for (std::size_t level = 1; level < levels_.size(); ++level) {

@@ -46,6 +46,10 @@ class BoxTree {
   /// Valid as long as this tree is neither changed nor moved.
   kernels::SceneView view() const;
 
+  /// Whether a ray at random meets the bounds of so many boxes that the first ones that one comes
+  /// to most often say that some box is met.
+  bool isFull() const { return is_full_; }
+
   /// Boxes whose numbers are out of the range of the kernels, by their number.
   // NOLINTNEXTLINE(readability-identifier-naming): as the field
   const std::vector<std::uint32_t>& left_out() const { return left_out_; }
@@ -74,7 +78,8 @@ class BoxTree {
   double around_[2][3] = {};
   bool has_aligned_ = false;
   double mean_free_path_ = 0.0;
-  double bounds_met_ = 0.0;  ///< by a ray through all of it
+  double bounds_met_ = 0.0;  ///< by a ray along its longest side
+  bool is_full_ = false;
   /// Areas of the nodes over that of the whole: what a ray has to compare.
   double cost_ = 0.0;
 

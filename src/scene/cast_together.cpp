@@ -96,6 +96,12 @@ void Scene::castClosest(const Ray* rays, std::size_t count, ClosestBox* closest,
 
 void Scene::castAny(const Ray* rays, std::size_t count, std::uint8_t* any, MaxRanges max_ranges,
                     const BoxMask* mask) const noexcept {
+  if (impl_->tree.isFull()) {  // what rays have in common would be looked at for nothing
+    for (std::size_t i = 0; i < count; ++i) {
+      any[i] = castAny(rays[i], max_ranges[i], mask) ? 1 : 0;
+    }
+    return;
+  }
   askTogether(
       *impl_, impl_->kernels.any_together, rays, count, any, std::uint8_t{0}, max_ranges, mask,
       [&](std::size_t i, kernels::Answer answer, const kernels::Found* found) {
@@ -107,6 +113,12 @@ void Scene::castAny(const Ray* rays, std::size_t count, std::uint8_t* any, MaxRa
 
 void Scene::isClear(const Segment* segments, std::size_t count, std::uint8_t* clear, double radius,
                     const BoxMask* mask) const noexcept {
+  if (impl_->tree.isFull()) {
+    for (std::size_t i = 0; i < count; ++i) {
+      clear[i] = isClear(segments[i], radius, mask) ? 1 : 0;
+    }
+    return;
+  }
   constexpr double kInf = std::numeric_limits<double>::infinity();
   if (radius == 0.0) {
     askTogether(

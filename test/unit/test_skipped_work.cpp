@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <thread>
@@ -193,6 +194,35 @@ TEST(SkippedWork, OfALongSceneAndOfAStackOnlyWhatIsNearARayIsCompared) {
     });
     EXPECT_LT(work.nodes, 2 * kRays * 8) << "among " << size;
   }
+}
+
+TEST(SkippedWork, OfBoxesThatFillASceneABatchLooksAtNoMoreThanEachRayDoes) {
+  Sampler sampler(6);
+  std::vector<Box> boxes;  // one in the other
+  while (boxes.size() < 3000) {
+    const double half = 3.0 - 0.001 * static_cast<double>(boxes.size());
+    boxes.emplace_back(AlignedBox{Vector3::Constant(-half), Vector3::Constant(half)});
+  }
+  const Scene scene(boxes);
+  std::vector<Ray> rays;
+  std::vector<Segment> segments;
+  while (rays.size() < kRays) {
+    rays.push_back({sampler.vector(-3.0, 3.0), sampler.direction()});
+    segments.push_back({rays.back().origin, rays.back().origin + rays.back().direction});
+  }
+  std::vector<std::uint8_t> said(kRays);
+  const QueryCounters one_by_one = workOf([&] {
+    for (std::size_t k = 0; k < kRays; ++k) {
+      scene.castAny(rays[k]);
+      scene.isClear(segments[k], 0.1);
+    }
+  });
+  const QueryCounters together = workOf([&] {
+    scene.castAny(rays.data(), kRays, said.data());
+    scene.isClear(segments.data(), kRays, said.data(), 0.1);
+  });
+  EXPECT_LE(together.nodes, one_by_one.nodes);
+  EXPECT_LE(together.boxes, one_by_one.boxes);
 }
 
 TEST(SkippedWork, WhichOfTheBoxesThatARayStartsInComesFirstIsNotCompared) {
