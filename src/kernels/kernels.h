@@ -29,8 +29,8 @@ struct Kernels {
   /// are left in `found`, or were taken.
   Answer (*any)(const SceneView&, const RayQuery&, Found& found);
 
-  /// Whether a box is within the radius of a segment, certainly. Where that is not clear, the
-  /// segment is not taken.
+  /// Whether a box is within the radius of a segment, certainly. Where that is not clear, or takes
+  /// more than a few boxes, the segment is not taken.
   ///
   /// @pre 0 < radius <= kLargestRadius
   Answer (*any_within)(const SceneView&, const RayQuery&, Found& found);

@@ -113,6 +113,8 @@ struct SceneView {
   bool has_aligned;  ///< some records are of aligned boxes
   /// How far a ray goes in the mean before it meets a box.
   double mean_free_path;
+  /// Bounds that are moved outward by a larger radius reach too much of the scene to be worth it.
+  double most_radius;
 };
 
 /// The part of a component that a query is about: origin + t * direction, t in [0, 1] or [0, inf).
@@ -131,8 +133,8 @@ struct RayQuery {
 
 /// Of a query about a radius, at most.
 constexpr double kLargestRadius = 0x1p40;
-inline bool isForKernels(double radius) {
-  return radius > 0.0 && radius <= kLargestRadius;
+inline bool isForKernels(double radius, const SceneView& view) {
+  return radius > 0.0 && radius <= view.most_radius;
 }
 
 constexpr double kFarthestOrigin = 0x1p60;

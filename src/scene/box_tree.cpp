@@ -151,6 +151,7 @@ void BoxTree::measure() {
   const double free = 4.0 * volume / area;
   mean_free_path_ = std::min(std::max(free, longest / 64.0), 2.0 * longest);
   bounds_met_ = longest / free;
+  measureRadius();
   constexpr double kMostApart = 50.0;  // measured
   is_full_ = area > kMostApart * 2.0 * static_cast<double>(around.area());
 
@@ -161,6 +162,35 @@ void BoxTree::measure() {
     }
   }
   cost_ /= static_cast<double>(around.area());
+}
+
+/// Finds the radius up to which the cube of a point reaches few boxes, in the mean over all points
+/// that may be so near: of boxes without extent, all over the scene.
+void BoxTree::measureRadius() {
+  constexpr double kFew = 4.0;  // measured
+  const auto count = static_cast<double>(records_.size());
+  most_radius_ = kernels::kLargestRadius;
+  if (count <= kFew) {
+    return;
+  }
+  double sides[3];
+  double longest = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    sides[i] = around_[1][i] - around_[0][i];
+    longest = std::max(longest, sides[i]);
+  }
+  const auto reached = [&](double radius) {
+    double boxes = count;
+    for (const double side : sides) {
+      boxes *= 2.0 * radius / (side + 2.0 * radius);
+    }
+    return boxes;
+  };
+  constexpr double kAll = 64.0;  // times the scene: more than kFew of five boxes
+  most_radius_ = std::min(most_radius_, kAll * longest);
+  while (reached(most_radius_) > kFew) {
+    most_radius_ *= 0.75;
+  }
 }
 
 /// Of the bounds of boxes that a ray through all of it meets, how many do so in vain: of a convex
@@ -233,6 +263,7 @@ kernels::SceneView BoxTree::view() const {
   view.meets_few_leaves = levels_.size() == 2 && cost_ < kFew;
   view.has_aligned = has_aligned_;
   view.mean_free_path = mean_free_path_;
+  view.most_radius = most_radius_;
   return view;
 }
 

@@ -59,6 +59,7 @@ class BoxTree {
   void setRests(const SceneBoxes& boxes, std::size_t record);
   void addLeaves();
   void measure();
+  void measureRadius();
   bool isGone(std::size_t record) const { return box_of_record_[record] == BoxChanges::kGone; }
   double metInVain() const;
   void setBlocks();
@@ -78,6 +79,7 @@ class BoxTree {
   double around_[2][3] = {};
   bool has_aligned_ = false;
   double mean_free_path_ = 0.0;
+  double most_radius_ = kernels::kLargestRadius;
   double bounds_met_ = 0.0;  ///< by a ray along its longest side
   bool is_full_ = false;
   /// Areas of the nodes over that of the whole: what a ray has to compare.

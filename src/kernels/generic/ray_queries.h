@@ -232,7 +232,10 @@ class AnyVisit : public RayVisit {
   bool is_met_ = false;
 };
 
-/// A search for any box within the radius of a segment.
+/// A search for any box within the radius of a segment. Bounds that are moved outward by the radius
+/// have corners that are farther away than it: where it is large, and boxes are many, the corners
+/// may hold most of them. So a search that looks at some in vain is left to the caller, whose
+/// search by distances leaves corners out.
 class WithinVisit : public RayVisit {
  public:
   static constexpr bool kAnyWillDo = true;
@@ -253,6 +256,10 @@ class WithinVisit : public RayVisit {
       is_within_ = near.upper <= query_->radius;
       is_open_ = is_open_ || near.lower <= query_->radius;
     }
+    if (!is_within_ && ++in_vain_ == kMostInVain) {
+      is_open_ = true;
+      return false;
+    }
     return !is_within_;
   }
 
@@ -261,8 +268,11 @@ class WithinVisit : public RayVisit {
   }
 
  private:
+  static constexpr int kMostInVain = 8;  // measured
+
   bool is_within_ = false;
   bool is_open_ = false;  ///< floats and doubles do not say of some box whether it is
+  int in_vain_ = 0;       ///< boxes that were looked at, and are not certainly within
 };
 
 /// A search for all boxes.

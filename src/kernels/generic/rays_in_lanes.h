@@ -180,7 +180,12 @@ class LaneSearch {
 
   void askEachAlone(std::uint32_t rays) {
     for (; rays != 0; rays &= rays - 1) {
-      askAlone<What>(view_, queries_, first_ + static_cast<std::size_t>(lowestBit(rays)), to_);
+      const std::size_t number = first_ + static_cast<std::size_t>(lowestBit(rays));
+      if constexpr (Visit::kWithin) {  // it would not be taken
+        to_.take(number, Answer::kNotTaken, Found(&to_.work));
+      } else {
+        askAlone<What>(view_, queries_, number, to_);
+      }
     }
   }
 

@@ -21,6 +21,7 @@ class TreeSearch : LaneSearch<What> {
   using Base::to_;
   using Base::view_;
   using Base::visit;
+  using typename Base::Visit;
 
  public:
   using Base::Base;
@@ -144,7 +145,11 @@ class TreeSearch : LaneSearch<What> {
 
   void visitAll(const std::uint32_t* records, const float* nears, int count) {
     forEachRecord(view_, records, count, [&](std::uint32_t entry, int i) {
-      visit(static_cast<int>(entry >> kNumberBits), entry & kLargestNumber, nears[i]);
+      const auto ray = static_cast<int>(entry >> kNumberBits);
+      visit(ray, entry & kLargestNumber, nears[i]);
+      if (Visit::kWithin && rays_[ray].in_float.end_s < 0.0F) {
+        in_memory_.end[ray] = -1.0F;  // it meets no other node
+      }
     });
   }
 
