@@ -133,9 +133,6 @@ struct RayQuery {
 
 /// Of a query about a radius, at most.
 constexpr double kLargestRadius = 0x1p40;
-inline bool isForKernels(double radius, const SceneView& view) {
-  return radius > 0.0 && radius <= view.most_radius;
-}
 
 constexpr double kFarthestOrigin = 0x1p60;
 

@@ -36,7 +36,7 @@ void clearSlot(kernels::BoxBlock& block, std::size_t slot);
 
 /// Leaves without boxes.
 kernels::LeafBoxes emptyLeaf();
-void setSlot(kernels::LeafBoxes& leaf, std::size_t slot, const kernels::BoxRecord& record,
+void setSlot(kernels::LeafBoxes& leaf, std::size_t slot, const kernels::BoxRecord& box,
              const double* scene_center);
 void clearSlot(kernels::LeafBoxes& leaf, std::size_t slot);
 

@@ -55,6 +55,15 @@ double areaOf(const kernels::BoxRecord& box) {
   return areaOf(sides);
 }
 
+/// How many points of as many, all over something of these sides, a cube of a radius reaches, in
+/// the mean over all cubes that reach it.
+double boxesReached(double points, const double* sides, double radius) {
+  for (int i = 0; i < 3; ++i) {
+    points *= 2.0 * radius / (sides[i] + 2.0 * radius);
+  }
+  return points;
+}
+
 }  // namespace
 
 // A box is prepared twice, which takes less time than to keep it.
@@ -151,7 +160,7 @@ void BoxTree::measure() {
   const double free = 4.0 * volume / area;
   mean_free_path_ = std::min(std::max(free, longest / 64.0), 2.0 * longest);
   bounds_met_ = longest / free;
-  measureRadius();
+  measureRadius(std::sqrt(area / (6.0 * static_cast<double>(records_.size()))));
   constexpr double kMostApart = 50.0;  // measured
   is_full_ = area > kMostApart * 2.0 * static_cast<double>(around.area());
 
@@ -165,8 +174,9 @@ void BoxTree::measure() {
 }
 
 /// Finds the radius up to which the cube of a point reaches few boxes, in the mean over all points
-/// that may be so near: of boxes without extent, all over the scene.
-void BoxTree::measureRadius() {
+/// that may be so near: of boxes without extent, all over the scene, and of each leaf all over it.
+/// None, where floats tell boxes of that mean side hardly apart, some being far away from others.
+void BoxTree::measureRadius(double mean_side) {
   constexpr double kFew = 4.0;  // measured
   const auto count = static_cast<double>(records_.size());
   most_radius_ = kernels::kLargestRadius;
@@ -175,22 +185,48 @@ void BoxTree::measureRadius() {
   }
   double sides[3];
   double longest = 0.0;
+  double reach = 0.0;
   for (int i = 0; i < 3; ++i) {
     sides[i] = around_[1][i] - around_[0][i];
     longest = std::max(longest, sides[i]);
+    reach += std::max(std::fabs(around_[0][i]), std::fabs(around_[1][i]));
   }
-  const auto reached = [&](double radius) {
-    double boxes = count;
-    for (const double side : sides) {
-      boxes *= 2.0 * radius / (side + 2.0 * radius);
-    }
-    return boxes;
-  };
+  constexpr double kApart = 0.5;  // measured
+  if (reach * kernels::bounds::kApart > kApart * mean_side) {
+    most_radius_ = 0.0;
+    return;
+  }
   constexpr double kAll = 64.0;  // times the scene: more than kFew of five boxes
   most_radius_ = std::min(most_radius_, kAll * longest);
-  while (reached(most_radius_) > kFew) {
-    most_radius_ *= 0.75;
+  const double least = 0x1p-24 * longest;
+  while (boxesReached(count, sides, most_radius_) > kFew ||
+         boxesReachedInLeaves(most_radius_) > kFew) {
+    most_radius_ = most_radius_ > least ? 0.75 * most_radius_ : 0.0;
   }
+}
+
+/// Of a leaf, in the mean over a sample of them; 0 if there is but a list.
+double BoxTree::boxesReachedInLeaves(double radius) const {
+  if (levels_.size() < 2) {
+    return 0.0;
+  }
+  constexpr std::size_t kSample = 64;
+  const TreeNodes& parents = levels_[1];
+  const std::size_t step = (parents.size() - 1) / kSample + 1;
+  double reached = 0.0;
+  double leaves = 0.0;
+  for (std::size_t node = 0; node < parents.size(); node += step) {
+    const kernels::Bounds& bounds = parents.bounds[node];
+    const std::size_t leaf = parents.first[node];  // the first stands for its neighbours
+    double sides[3];
+    for (int i = 0; i < 3; ++i) {
+      sides[i] = std::max(0.0F, bounds.plane[1][i][0] - bounds.plane[0][i][0]);
+    }
+    const auto boxes = static_cast<double>(levels_[0].childrenOf(leaf, records_.size()));
+    reached += boxesReached(boxes, sides, radius);
+    leaves += 1.0;
+  }
+  return reached / leaves;
 }
 
 /// Of the bounds of boxes that a ray through all of it meets, how many do so in vain: of a convex

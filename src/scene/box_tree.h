@@ -59,7 +59,8 @@ class BoxTree {
   void setRests(const SceneBoxes& boxes, std::size_t record);
   void addLeaves();
   void measure();
-  void measureRadius();
+  void measureRadius(double mean_side);
+  double boxesReachedInLeaves(double radius) const;
   bool isGone(std::size_t record) const { return box_of_record_[record] == BoxChanges::kGone; }
   double metInVain() const;
   void setBlocks();

@@ -35,6 +35,11 @@ inline kernels::RayQuery rayQuery(const Segment& segment, double max_range, cons
           radius};
 }
 
+/// Whether kernels are asked what is within a radius.
+inline bool isForKernels(double radius, const kernels::SceneView& view) {
+  return radius > 0.0 && radius <= view.most_radius;
+}
+
 /// The same ray with a direction of about 1, times an exact power of two: it meets the same boxes
 /// at the same ranges. Nothing if some component would not be exact, nor of a zero direction.
 inline std::optional<Ray> withDirectionNearOne(const Ray& ray) {

@@ -133,7 +133,7 @@ void Scene::isClear(const Segment* segments, std::size_t count, std::uint8_t* cl
   const auto decide = [&](std::size_t i) {
     clear[i] = impl_->areFartherThan(segments[i], radius, mask) ? 1 : 0;
   };
-  if (!kernels::isForKernels(radius, impl_->view)) {
+  if (!isForKernels(radius, impl_->view)) {
     for (std::size_t i = 0; i < count; ++i) {
       decide(i);
     }

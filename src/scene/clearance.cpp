@@ -94,7 +94,7 @@ bool Scene::isClear(const Segment& segment, double radius, const BoxMask* mask) 
 /// Whether any box is within the radius: kYes or kNone, or what no kernel can say.
 kernels::Answer Scene::Impl::anyWithin(const Segment& segment, double radius,
                                        const BoxMask* mask) const {
-  if (!kernels::isForKernels(radius, view)) {
+  if (!isForKernels(radius, view)) {
     return kernels::Answer::kNotTaken;
   }
   constexpr double kInf = std::numeric_limits<double>::infinity();

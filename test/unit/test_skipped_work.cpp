@@ -225,6 +225,42 @@ TEST(SkippedWork, OfBoxesThatFillASceneABatchLooksAtNoMoreThanEachRayDoes) {
   EXPECT_LE(together.boxes, one_by_one.boxes);
 }
 
+TEST(SkippedWork, WhatIsNotWithinARadiusIsNotComparedInDoubleWhereverABoxLies) {
+  std::vector<Box> row;
+  for (int i = 0; i < 300; ++i) {
+    row.emplace_back(OrientedBox{{5.0 * i, 0.0, 0.0}, {1.0, 0.1, 0.2, 0.3}, {1.0, 1.0, 1.0}});
+  }
+  for (const double far : {1e3, 1e8}) {  // where floats hardly tell the others apart
+    std::vector<Box> boxes = row;
+    boxes.emplace_back(AlignedBox{{far, far, 0.0}, {far + 1.0, far + 1.0, 1.0}});
+    const Scene scene(boxes);
+    const Segment segment{{700.0, 5.0, 0.0}, {704.0, 5.0, 0.0}};
+    EXPECT_LE(workOf([&] { EXPECT_TRUE(scene.isClear(segment, 0.3)); }).boxes, 2U) << far;
+    const std::vector<Segment> segments(20, segment);
+    std::vector<std::uint8_t> clear(20);
+    const QueryCounters together =
+        workOf([&] { scene.isClear(segments.data(), 20, clear.data(), 0.3); });
+    EXPECT_LE(together.boxes, 40U) << far;
+  }
+}
+
+TEST(SkippedWork, OfAClusterInAnEmptySceneFewNodesAreComparedForALargeRadius) {
+  Sampler sampler(5);
+  std::vector<Box> boxes = {AlignedBox{{-2e3, -2e3, -2e3}, {-1999.0, -1999.0, -1999.0}},
+                            AlignedBox{{2e3, 2e3, 2e3}, {2001.0, 2001.0, 2001.0}}};
+  while (boxes.size() < 5000) {
+    boxes.emplace_back(
+        OrientedBox{sampler.vector(-0.5, 0.5), sampler.rotation(), {1e-3, 1e-3, 1e-3}});
+  }
+  const Scene scene(boxes);
+  const std::vector<Segment> segments(16, Segment{{0.0, 0.0, 0.0}, {0.1, 0.1, 0.0}});
+  std::vector<std::uint8_t> clear(16);
+  const QueryCounters work =
+      workOf([&] { scene.isClear(segments.data(), 16, clear.data(), 10.0); });
+  EXPECT_EQ(clear, std::vector<std::uint8_t>(16, 0));
+  EXPECT_LT(work.nodes, 16U * 20);
+}
+
 TEST(SkippedWork, WhichOfTheBoxesThatARayStartsInComesFirstIsNotCompared) {
   const std::vector<Box> nest = [] {
     std::vector<Box> boxes;

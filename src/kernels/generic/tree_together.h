@@ -128,6 +128,9 @@ class TreeSearch : LaneSearch<What> {
     for (int k = 0; k < count; ++k) {
       const std::uint32_t node = nodes[k] & kLargestNumber;
       const std::uint32_t ray = nodes[k] >> kNumberBits;
+      if (Visit::kWithin && in_memory_.end[ray] < 0.0F) {
+        continue;  // it is done
+      }
       Float16 near;
       if (k + kNodesAhead < count) {
         fetchNode(here.bounds[nodes[k + kNodesAhead] & kLargestNumber]);
