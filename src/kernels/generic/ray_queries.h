@@ -5,8 +5,6 @@
 /// What all of them have in common.
 class RayVisit {
  public:
-  static constexpr bool kWithin = false;
-
   RayVisit() = default;
   RayVisit(const SceneView& view, const RayQuery& query, Found& into, FloatRay& ray)
       : found(&into), view_(&view), query_(&query), in_float_(&ray), end_s_(ray.end_s) {}
@@ -108,6 +106,7 @@ class RayVisit {
 class ClosestVisit : public RayVisit {
  public:
   static constexpr bool kAnyWillDo = false;
+  static constexpr bool kWithin = false;
 
   using RayVisit::RayVisit;
 
@@ -203,6 +202,7 @@ class ClosestVisit : public RayVisit {
 class AnyVisit : public RayVisit {
  public:
   static constexpr bool kAnyWillDo = true;
+  static constexpr bool kWithin = false;
 
   using RayVisit::RayVisit;
 
@@ -278,6 +278,8 @@ class WithinVisit : public RayVisit {
 /// A search for all boxes.
 class AllVisit : public RayVisit {
  public:
+  static constexpr bool kWithin = false;
+
   using RayVisit::RayVisit;
 
   [[gnu::always_inline]] bool operator()(std::uint32_t record) {

@@ -129,7 +129,7 @@ template <typename Visit, typename Lanes>
     word = bits != 0 ? w : word;
     met = bits != 0 ? bits : met;
   }
-  met &= -met;
+  met ^= met & (met - 1);  // its lowest bit
   among.met[word] &= ~met;
   std::uint32_t next = 0;
   const auto record = [&word](int slot) { return 64 * word + static_cast<std::uint32_t>(slot); };
