@@ -7,6 +7,7 @@
 #include "exact/bounds.h"
 #include "exact/distance_bounds.h"
 #include "kernels/float_bounds.h"
+#include "kernels/kernels.h"
 #include "stress/families.h"
 #include "stress/mutation.h"
 #include "stress/run_families.h"
@@ -44,6 +45,16 @@ std::uint64_t wrongDistances(const char* family, std::uint64_t count) {
 std::uint64_t wrongScenes(const char* family, std::uint64_t count) {
   return wrongAnswers(runScenes, sceneFamilyNames(), family, count);
 }
+
+/// Of what only kernels with vectors do.
+class MutationsOfVectors : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (kernels::active().cross == nullptr) {
+      GTEST_SKIP() << "the portable kernel works out one axis after the other";
+    }
+  }
+};
 
 /// Gives a number another value as long as it lives.
 template <typename T>
@@ -116,13 +127,13 @@ TEST(Mutations, ShrunkBoundsOfDistancesAreNoticed) {
   EXPECT_GT(wrongDistances("rounded_axis", 2000), 0U);
 }
 
-TEST(Mutations, ShrunkBoundsOfRefinedDistancesAreNoticed) {
+TEST_F(MutationsOfVectors, ShrunkBoundsOfRefinedDistancesAreNoticed) {
   const Spoilt<bool> by_axes(mutation.refine_by_axes, true);
   const Spoilt<double> spoilt(bounds::kRow, bounds::kRow / 1024);
   EXPECT_GT(wrongDistances("origin_on_box", 4000), 0U);
 }
 
-TEST(Mutations, ShrunkBoundsOfDistancesInScenesAreNoticed) {
+TEST_F(MutationsOfVectors, ShrunkBoundsOfDistancesInScenesAreNoticed) {
   EXPECT_EQ(wrongScenes("scene_midpoints", 200), 0U);
   const Spoilt<double> spoilt(bounds::kRests, bounds::kRests / 2048);  // first seen at 1/1024
   EXPECT_GT(wrongScenes("scene_midpoints", 200), 0U);
@@ -205,7 +216,7 @@ TEST(Mutations, BoundsThatAreMovedOutwardByLessThanTheRadiusAreNoticed) {
   EXPECT_GT(wrongScenes("scene_near_ties", 400), 0U);
 }
 
-TEST(Mutations, EstimatesOfRootsThatAreTakenForRootsAreNoticed) {
+TEST_F(MutationsOfVectors, EstimatesOfRootsThatAreTakenForRootsAreNoticed) {
   const Spoilt<double> spoilt(float_bounds::kRoughRoot, 0.0);
   EXPECT_GT(wrongScenes("scene_near_ties", 400), 0U);
 }
