@@ -121,7 +121,9 @@ class NearestOneSearch {
     const BoxRecord& record = view_.records[best];
     prefetch(record.column[0]);
     prefetch(record.column[2]);
-    prefetch(view_.rests[best].column[0]);
+    if (view_.rests != nullptr) {  // as where the kernels in use round
+      prefetch(view_.rests[best].column[0]);
+    }
     prefetch(view_.box_of_record + best);
   }
   void goTo(int level, std::uint32_t child) {
