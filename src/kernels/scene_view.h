@@ -42,8 +42,8 @@ struct alignas(16) AxisRests {
   float column[3][4];
 };
 
-/// Sixteen boxes in float, relative to the center of the scene, all as oriented
-/// ones. An empty slot has extents of -inf.
+/// Sixteen boxes in float, relative to the center of the scene, all as oriented ones. An empty slot
+/// has extents of -inf.
 struct alignas(64) BoxBlock {
   float axis[3][3][kSlots];  ///< [axis of the box][coordinate][slot]
   float center[3][kSlots];

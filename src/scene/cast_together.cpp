@@ -113,7 +113,7 @@ void Scene::castAny(const Ray* rays, std::size_t count, std::uint8_t* any, MaxRa
 
 void Scene::isClear(const Segment* segments, std::size_t count, std::uint8_t* clear, double radius,
                     const BoxMask* mask) const noexcept {
-  if (impl_->tree.isFull()) {
+  if (impl_->tree.isFull() || (radius != 0.0 && !isForKernels(radius, impl_->view))) {
     for (std::size_t i = 0; i < count; ++i) {
       clear[i] = isClear(segments[i], radius, mask) ? 1 : 0;
     }
@@ -130,24 +130,13 @@ void Scene::isClear(const Segment* segments, std::size_t count, std::uint8_t* cl
         });
     return;
   }
-  const auto decide = [&](std::size_t i) {
-    clear[i] = impl_->areFartherThan(segments[i], radius, mask) ? 1 : 0;
-  };
-  if (!isForKernels(radius, impl_->view)) {
-    for (std::size_t i = 0; i < count; ++i) {
-      decide(i);
-    }
-    return;
-  }
   askTogether(
       *impl_, impl_->kernels.any_within_together, segments, count, clear, std::uint8_t{1}, kInf,
       mask,
       [&](std::size_t i, kernels::Answer answer, const kernels::Found* /*found*/) {
-        if (answer == kernels::Answer::kYes) {
-          clear[i] = 0;
-        } else {
-          decide(i);
-        }
+        const bool is_clear =
+            answer != kernels::Answer::kYes && impl_->areFartherThan(segments[i], radius, mask);
+        clear[i] = is_clear ? 1 : 0;
       },
       radius);
 }

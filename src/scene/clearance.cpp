@@ -91,7 +91,6 @@ bool Scene::isClear(const Segment& segment, double radius, const BoxMask* mask) 
   }
 }
 
-/// Whether any box is within the radius: kYes or kNone, or what no kernel can say.
 kernels::Answer Scene::Impl::anyWithin(const Segment& segment, double radius,
                                        const BoxMask* mask) const {
   if (!isForKernels(radius, view)) {

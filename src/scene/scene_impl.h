@@ -58,8 +58,9 @@ struct Scene::Impl {
   bool decideAny(const T& linear, double max_range, const BoxMask* mask, kernels::Answer answer,
                  const kernels::Found& found) const;
 
-  /// Whether all boxes are farther from a segment than a radius.
+  /// Whether any box is within a radius of a segment: kYes or kNone, or what no kernel can say.
   kernels::Answer anyWithin(const Segment& segment, double radius, const BoxMask* mask) const;
+  /// Whether all boxes are farther from it.
   bool areFartherThan(const Segment& segment, double radius, const BoxMask* mask) const;
 
   /// Calls visit(index, bounds, estimate) for all boxes that may be within `bound` of the segment:

@@ -187,7 +187,7 @@ template <typename Visit>
   if (view.boxes_in_blocks <= 192) {
     return searchFewBlocks<Visit, BlockLanes, 3>(view, query, found, ray);
   }
-  FloatRay in_scene;
+  FloatRay in_scene;  // a ray that passes all of them is sooner told so than compared
   return prepareUsual<Visit::kWithin>(view, query, in_scene, true) == Outcome::kMiss
              ? Answer::kNone
              : searchManyBlocks<Visit, BlockLanes>(view, query, found, ray);
