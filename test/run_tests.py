@@ -237,7 +237,7 @@ def main():
     parser = argparse.ArgumentParser(prog='test/run')
     parser.add_argument('--build-dir', required=True)
     parser.add_argument('--verbose', action='store_true', help='print also what the tests print')
-    parser.add_argument('--jobs', type=int, default=os.cpu_count(), metavar='N', help='tests that run at once')
+    parser.add_argument('--jobs', type=int, default=len(os.sched_getaffinity(0)), metavar='N', help='tests that run at once')
     parser.add_argument('--allow-skips', default='', metavar='REGEX',
                         help='a skip counts as failed unless this matches its name and reason')
     parser.add_argument('--leave-out', metavar='REGEX', help='not the tests whose name it matches')
