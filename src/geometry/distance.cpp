@@ -25,11 +25,7 @@ NearestEstimate estimateOf(const Segment& segment, const BoxType& box) {
 
 /// The parameter from which on a segment is in a box.
 template <typename BoxType>
-std::optional<double> firstMeeting(const Segment& segment, const BoxType& box,
-                                   const SegmentSlabs& slabs) {
-  if (startsInside(slabs)) {
-    return 0.0;
-  }
+std::optional<double> firstMeeting(const Segment& segment, const BoxType& box) {
   Solution solution = solve(segment, doubleComponent(segment), box);
   return solution.num_points > 0
              ? std::optional<double>(roundedParameter(segment, box, solution, End::kEnter))
@@ -42,7 +38,9 @@ RoundedDistance nearestOf(const Segment& segment, const BoxType& box, const Near
     if (const auto refined = refinedDistance(segment, box, e.slabs, e.guess)) {
       return *refined;
     }
-  } else if (const auto t = firstMeeting(segment, box, e.slabs)) {
+  } else if (startsInside(e.slabs)) {
+    return {0.0, 0.0};
+  } else if (const auto t = firstMeeting(segment, box)) {
     return {0.0, *t};
   }
   if (const auto flat = flatDistance(segment, box)) {
@@ -76,6 +74,24 @@ SegmentDistance roundedDistance(const Segment& segment, const BoxType& box,
   result.distance = nearest.distance;
   result.t = nearest.t;
   setClosestPoints(segment, box, result);
+  return result;
+}
+
+template <typename BoxType>
+SegmentDistance distanceOfMet(const Segment& segment, const BoxType& box) {
+  SegmentDistance result;
+  result.distance = 0.0;
+  result.t = *firstMeeting(segment, box);
+  setClosestPoints(segment, box, result);
+  return result;
+}
+
+SegmentDistance fromInside(const Segment& segment) {
+  SegmentDistance result;
+  result.distance = 0.0;
+  result.t = 0.0;
+  result.on_segment = pointAt(segment, 0.0);
+  result.on_box = result.on_segment;
   return result;
 }
 
@@ -127,6 +143,8 @@ template exact::Ratio exactSquaredDistance(const Segment&, const OrientedBox&);
 template SegmentDistance roundedDistance(const Segment&, const AlignedBox&, const NearestEstimate&);
 template SegmentDistance roundedDistance(const Segment&, const OrientedBox&,
                                          const NearestEstimate&);
+template SegmentDistance distanceOfMet(const Segment&, const AlignedBox&);
+template SegmentDistance distanceOfMet(const Segment&, const OrientedBox&);
 template bool isFarther(const Segment&, const AlignedBox&, const DistanceBounds&, double);
 template bool isFarther(const Segment&, const OrientedBox&, const DistanceBounds&, double);
 template double roundedFirstWithin(const Segment&, const AlignedBox&, const NearestEstimate&,

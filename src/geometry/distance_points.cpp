@@ -13,15 +13,6 @@ double clamp(double x, double lo, double hi) {
   return std::min(std::max(x, lo), hi);
 }
 
-/// The ends themselves at 0 and 1; cannot overflow.
-Vector3 pointAt(const Segment& segment, double t) {
-  Vector3 point;
-  for (int i = 0; i < 3; ++i) {
-    point[i] = (1.0 - t) * segment.start[i] + t * segment.end[i];
-  }
-  return point;
-}
-
 /// Coordinates beyond this are divided by kRoom, so that no difference or rotation overflows.
 constexpr double kLarge = 0x1p1019;
 constexpr double kRoom = 0x1p-4;

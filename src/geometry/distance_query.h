@@ -34,6 +34,13 @@ template <typename BoxType>
 SegmentDistance roundedDistance(const Segment& segment, const BoxType& box,
                                 const NearestEstimate& estimate);
 
+/// The same of a segment that meets the box.
+template <typename BoxType>
+SegmentDistance distanceOfMet(const Segment& segment, const BoxType& box);
+
+/// The same of a segment that certainly starts in a box.
+SegmentDistance fromInside(const Segment& segment);
+
 /// The squared distance, exactly: what decides where nothing else does.
 template <typename BoxType>
 exact::Ratio exactSquaredDistance(const Segment& segment, const BoxType& box);

@@ -80,9 +80,9 @@ struct Kernels {
   /// @param quaternion x, y, z, w
   void (*find_rests)(const double* quaternion, const BoxRecord&, AxisRests&);
 
-  /// Works out the distance to the box of a record that the segment certainly does not meet, from a
-  /// parameter near the one where it is nearest.
-  /// @return whether it is certain; if not, it is nothing
+  /// Works out the distance to the box of a record from a parameter near the one where it is
+  /// nearest.
+  /// @return whether it is certain; if not, as of each box that is met, it is nothing
   bool (*round_nearest)(const SceneView&, const SegmentQuery&, const NearestOne&, RoundedNearest&);
 
   /// Works out eight distances at once.

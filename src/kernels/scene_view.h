@@ -241,11 +241,19 @@ using Approach = double (*)(void* context, std::uint32_t box, const NearBox& nea
 using ApproachEach = double (*)(void* context, std::size_t query, std::uint32_t box,
                                 const NearBox& near);
 
-/// The nearest box, certainly apart from the segment, and a parameter near the one where it is
-/// nearest.
+/// The nearest box, and a parameter near the one where it is nearest.
 struct NearestOne {
+  /// Where the segment starts that certainly meets the box, and no other.
+  enum class Start {
+    kApart,    ///< it may not meet the box
+    kOutside,  ///< or inside
+    kInside
+  };
   std::uint32_t record;
   double t;
+  Start start = Start::kApart;
+
+  bool isApart() const { return start == Start::kApart; }
 };
 
 /// Distance and parameter, correctly rounded, and the points, as SegmentDistance has them.
@@ -304,8 +312,7 @@ struct Refined {
 
 constexpr int kRoundLanes = 8;
 
-/// Segments, and of each the record of a box that it certainly does not meet, and a parameter near
-/// the one where it is nearest.
+/// Segments, and of each the record of a box, and a parameter near the one where it is nearest.
 struct alignas(64) RoundQueries {
   double start[3][kRoundLanes];
   double end[3][kRoundLanes];

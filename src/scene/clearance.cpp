@@ -118,6 +118,9 @@ kernels::Answer Scene::Impl::anyWithin(const Segment& segment, double radius,
 
 Clearance Scene::Impl::clearanceTo(const Segment& segment, const kernels::SegmentQuery& query,
                                    const kernels::NearestOne& one) const {
+  if (!one.isApart()) {
+    return clearanceOfMet(segment, one);
+  }
   const std::size_t box = view.box_of_record[one.record];
   kernels::RoundedNearest rounded;
   if (!kernels.round_nearest(view, query, one, rounded)) {
@@ -125,6 +128,17 @@ Clearance Scene::Impl::clearanceTo(const Segment& segment, const kernels::Segmen
   }
   const auto point = [](const double* p) { return Vector3(p[0], p[1], p[2]); };
   return {box, rounded.distance, rounded.t, point(rounded.on_segment), point(rounded.on_box)};
+}
+
+Clearance Scene::Impl::clearanceOfMet(const Segment& segment,
+                                      const kernels::NearestOne& one) const {
+  const std::size_t number = view.box_of_record[one.record];
+  const SegmentDistance met =
+      one.start == kernels::NearestOne::Start::kInside
+          ? fromInside(segment)
+          : std::visit([&](const auto& box) { return distanceOfMet(segment, box); },
+                       boxes.simplest(number));
+  return {number, met.distance, met.t, met.on_segment, met.on_box};
 }
 
 Clearance Scene::clearance(const Segment& segment, const BoxMask* mask) const noexcept {

@@ -153,7 +153,11 @@ void Scene::clearance(const Segment* segments, std::size_t count, Clearance* cle
     for (std::size_t k = 0; k < taken; ++k) {
       const std::size_t i = nearest.numbers[k];
       if (ones[k].record != kNoRecord) {
-        rounding.add(i, ones[k]);
+        if (ones[k].isApart()) {
+          rounding.add(i, ones[k]);
+        } else {
+          clearances[i] = impl_->clearanceOfMet(segments[i], ones[k]);
+        }
         continue;
       }
       NearestOffered& offered = nearest.offered[k];

@@ -74,12 +74,13 @@ struct Scene::Impl {
   /// Offers the boxes that kernels do not look at.
   void offerOthers(const Segment& segment, const BoxMask* mask, NearestOffered& offered) const;
 
-  /// Of a segment to a box that it certainly does not meet, known to be the nearest.
+  /// Of a segment to a box that is known to be the nearest.
   /// @param query the same segment
   Clearance clearanceTo(const Segment& segment, const kernels::SegmentQuery& query,
                         const kernels::NearestOne& one) const;
-  /// Of a segment to a box that is known to be the nearest.
   Clearance clearanceTo(const Segment& segment, std::size_t box) const;
+  /// Of a segment that certainly meets the box.
+  Clearance clearanceOfMet(const Segment& segment, const kernels::NearestOne& one) const;
 
   template <typename T>
   std::vector<BoxIntersection> findAll(const T& linear, const BoxMask* mask) const;

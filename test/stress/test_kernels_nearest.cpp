@@ -29,7 +29,16 @@ double distanceTo(const Segment& segment, const Box& any) {
   return std::visit([&](const auto& box) { return distance(segment, box).distance; }, any);
 }
 
+/// Whether what is said of a segment that meets its nearest box holds.
+void expectStart(const kernels::NearestOne& one, const Segment& segment, const Box& any) {
+  const SegmentDistance d =
+      std::visit([&](const auto& box) { return distance(segment, box); }, any);
+  EXPECT_TRUE(one.isApart() || d.distance == 0.0);
+  EXPECT_TRUE(one.start != kernels::NearestOne::Start::kInside || d.t == 0.0);
+}
+
 struct Counts {
+  int met_ones = 0;
   int met = 0;    ///< boxes that segments certainly meet
   int apart = 0;  ///< segments that are nearest to a box at some distance
   int ones = 0;   ///< segments for which floats say to which box
@@ -98,7 +107,10 @@ void checkNearest(const kernels::Kernels& kernels, const std::vector<Box>& boxes
     const bool is_one = kernels.nearest_one(view, query, offer, &several, &one, work);
     Search every{boxes, segment, true, kInf, {}, 0};
     EXPECT_FALSE(kernels.nearest_one(view, query, offer, &every, nullptr, work));
-    EXPECT_TRUE(!is_one || least > 0.0);
+    if (is_one) {
+      expectStart(one, segment, boxes[view.box_of_record[one.record]]);
+      counts.met_ones += least == 0.0 ? 1 : 0;
+    }
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       if (!std::isinf(truth[i]) && truth[i] == least) {
         EXPECT_TRUE(is_one ? view.box_of_record[one.record] == i : several.offered.count(i) == 1)
@@ -129,6 +141,7 @@ TEST_P(NearestKernelTest, OfferTheNearestInHostileScenes) {
   EXPECT_GT(counts.apart, asked / 10);
   EXPECT_GT(counts.met, 50);
   EXPECT_GT(counts.ones, GetParam()->nearest_one != nullptr ? asked / 20 : -1);
+  EXPECT_GT(counts.met_ones, GetParam()->nearest_one != nullptr ? 50 : -1);
   EXPECT_GT(10 * counts.close, 9 * counts.offered);
 }
 
@@ -226,6 +239,9 @@ TEST_P(NearestKernelTest, OfferTheNearestOfManySegments) {
         const bool is_one = ones[k].record != kNone;
         EXPECT_EQ(least, is_one ? distanceTo(segments[k], boxes[view.box_of_record[ones[k].record]])
                                 : others.bounds[k]);
+        if (is_one) {
+          expectStart(ones[k], segments[k], boxes[view.box_of_record[ones[k].record]]);
+        }
         num_ones += is_one ? 1 : 0;
       }
     }

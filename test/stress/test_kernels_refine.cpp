@@ -157,6 +157,40 @@ void checkTogether(const kernels::Kernels& kernels, const Pairs& pairs, Certain&
   }
 }
 
+TEST_P(RefineKernelTest, NoDistanceFromABoxThatIsMetIsCertain) {
+  if (GetParam()->round_together == nullptr) {
+    return;  // this kernel leaves it to others
+  }
+  int met = 0;
+  for (std::size_t family = 0; family < familyNames().size(); ++family) {
+    Pairs pairs;
+    for (std::uint64_t index = 0; index < 500; ++index) {
+      const Sample sample = makeSample(family, true, 33, index);
+      const auto& box = std::get<OrientedBox>(sample.box);
+      const NearestEstimate estimate = estimateNearest(sample.segment(), doubleSlabs(box));
+      if (alignedForm(box) || !isModerate(box) || estimate.bounds.lower > 0.0 ||
+          !testIntersection(sample.segment(), box)) {
+        continue;
+      }
+      const double guesses[3] = {estimate.guess.t, 0.0, 1.0};
+      pairs.add(*GetParam(), sample, guesses[index % 3]);
+      if (pairs.samples.size() == kernels::kRoundLanes) {
+        kernels::RoundedEach rounded;
+        EXPECT_EQ(0U, GetParam()->round_together(pairs.view(), pairs.queries, rounded));
+        for (std::size_t k = 0; k < pairs.samples.size(); ++k) {
+          kernels::RoundedNearest alone;
+          EXPECT_FALSE(GetParam()->round_nearest(
+              pairs.view(), nearestQuery(pairs.samples[k].segment(), nullptr),
+              {static_cast<std::uint32_t>(k), pairs.queries.t[k]}, alone));
+        }
+        met += kernels::kRoundLanes;
+        pairs = Pairs();
+      }
+    }
+  }
+  EXPECT_GT(met, 1000);
+}
+
 /// From guesses that are as good as double, or as float, or bad.
 TEST_P(RefineKernelTest, WhatIsCertainIsRoundedAsItIsWithoutAScene) {
   if (GetParam()->round_together == nullptr) {

@@ -35,6 +35,21 @@ static inline Double4 excessAt(const LaneSlabs& s, double t) {
   return x - smaller(larger(x, s.below), s.above);
 }
 
+/// What errors are relative to.
+static inline double scaleOf(const LaneSlabs& s) {
+  return sum3(larger(magnitude(s.below), magnitude(s.above)) + magnitude(s.direction));
+}
+static inline bool isInRange(double scale) {
+  return scale >= exact::bounds::kSmallestScale && scale <= exact::bounds::kLargestScale;
+}
+
+/// Whether the point at t in [0, 1] is certainly in the box.
+static inline bool isInBox(const LaneSlabs& s, double scale, double t) {
+  const Double4 x = all4(t) * s.direction;
+  const Double4 error = all4(exact::bounds::kDistance * scale);
+  return isInRange(scale) && notBelow3(smaller(x - s.below, s.above - x), error) == 7U;
+}
+
 /// A parameter near the one where the distance is smallest.
 static inline double guessNearest(const LaneSlabs& s, double scale) {
   const Double4 d = s.direction;
@@ -67,8 +82,7 @@ static inline double guessNearest(const LaneSlabs& s, double scale) {
 
 static inline void estimate(const BoxRecord& box, const SegmentQuery& query, NearBox& near) {
   const LaneSlabs s = laneSlabs(box, query);
-  const Double4 size = larger(magnitude(s.below), magnitude(s.above)) + magnitude(s.direction);
-  near.scale = sum3(size);
+  near.scale = scaleOf(s);
   near.t = guessNearest(s, near.scale);
   const Double4 excess = excessAt(s, near.t);
   store4(near.below, s.below);
@@ -83,11 +97,8 @@ static inline void estimate(const BoxRecord& box, const SegmentQuery& query, Nea
   const double least = at_start < at_end ? at_start : at_end;
   const double error = exact::bounds::kDistance * near.scale;
   near.lower = length > 0.0 ? least / length - error : 0.0;
-  const Double4 x = all4(near.t) * s.direction;
-  const bool is_met = notBelow3(smaller(x - s.below, s.above - x), all4(error)) == 7U;
-  near.upper = is_met ? 0.0 : length + error;
-  if (!(near.scale >= exact::bounds::kSmallestScale &&
-        near.scale <= exact::bounds::kLargestScale)) {
+  near.upper = isInBox(s, near.scale, near.t) ? 0.0 : length + error;
+  if (!isInRange(near.scale)) {
     near.lower = 0.0;
     near.upper = std::numeric_limits<double>::infinity();
   }

@@ -51,23 +51,30 @@ class NearestList {
     count_ = kept;
   }
 
-  /// Whether one is the nearest, certainly, and is not met.
-  bool isOne() const {
-    int near = 0;
-    for (int i = 0; i < count_; i += kSlots) {
-      const std::uint32_t listed = count_ - i < kSlots ? (1U << (count_ - i)) - 1 : kAllSlots;
-      near += __builtin_popcount(notAbove(load16(nears_ + i), all16(bound_)) & listed);
-    }
-    return near == 1 && lower_ > 0.0F && !is_full_;
-  }
+  /// How many may be the nearest.
+  int countNear() const { return countUpTo(bound_); }
+  /// The one of the least upper bound, and about where it is nearest.
   std::uint32_t best() const { return best_; }
   float t() const { return t_; }
+  /// Whether it is certainly not met.
+  bool isBestApart() const { return lower_ > 0.0F; }
+  /// Whether it may be met, and no other.
+  bool isOnlyBestMet() const { return lower_ <= 0.0F && countUpTo(0.0F) == 1; }
   bool isFull() const { return is_full_; }
   int count() const { return count_; }
   std::uint32_t record(int i) const { return list_[i]; }
   float lower(int i) const { return nears_[i]; }
 
  private:
+  int countUpTo(float near) const {
+    int count = 0;
+    for (int i = 0; i < count_; i += kSlots) {
+      const std::uint32_t listed = count_ - i < kSlots ? (1U << (count_ - i)) - 1 : kAllSlots;
+      count += __builtin_popcount(notAbove(load16(nears_ + i), all16(near)) & listed);
+    }
+    return count;
+  }
+
   static constexpr int kCapacity = 64;
   static constexpr std::uint32_t kAllSlots = (1U << kSlots) - 1;
   static constexpr float kNoBound = std::numeric_limits<float>::max();
@@ -205,12 +212,40 @@ class NearestOneSearch {
   }
 }
 
+/// Where the segment certainly starts that may meet a box.
+static NearestOne::Start startOf(const SceneView& view, const SegmentQuery& query,
+                                 std::uint32_t record, float t, Work& work) {
+  const BoxRecord& box = view.records[record];
+  ++work.boxes;
+  work.turned_boxes += box.isAligned() ? 0 : 1;
+  const LaneSlabs slabs = laneSlabs(box, query);
+  const double scale = scaleOf(slabs);
+  return !isInBox(slabs, scale, t)    ? NearestOne::Start::kApart
+         : isInBox(slabs, scale, 0.0) ? NearestOne::Start::kInside
+                                      : NearestOne::Start::kOutside;
+}
+
+/// Says which is the nearest, if that is clear: the only one that may be, or may be met.
+static bool isOne(const SceneView& view, const SegmentQuery& query, const NearestList& list,
+                  NearestOne& one, Work& work) {
+  NearestOne::Start start = NearestOne::Start::kApart;
+  if (list.isOnlyBestMet()) {
+    start = startOf(view, query, list.best(), list.t(), work);
+  } else if (!list.isBestApart()) {
+    return false;
+  }
+  if (start == NearestOne::Start::kApart && list.countNear() != 1) {
+    return false;
+  }
+  one = {list.best(), list.t(), start};
+  return true;
+}
+
 /// Says which is the nearest, or offers all that may be.
 [[gnu::always_inline]] static inline bool decide(const SceneView& view, const SegmentQuery& query,
                                                  NearestList& list, Approach approach,
                                                  void* context, NearestOne* one, Work& work) {
-  if (list.isOne() && one != nullptr) {
-    *one = {list.best(), list.t()};
+  if (one != nullptr && !list.isFull() && isOne(view, query, list, *one, work)) {
     return true;
   }
   list.tidy();
