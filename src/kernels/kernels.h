@@ -86,8 +86,8 @@ struct Kernels {
   bool (*round_nearest)(const SceneView&, const SegmentQuery&, const NearestOne&, RoundedNearest&);
 
   /// Works out eight distances at once.
-  /// @return a bit for each that is certain; the others are nothing
-  std::uint32_t (*round_together)(const SceneView&, const RoundQueries&, RoundedEach&);
+  /// @return a bit for each that is certain; of others the parameter may be a better guess
+  std::uint32_t (*round_together)(const SceneView&, const RoundQueries&);
 };
 
 extern const Kernels kPortable;

@@ -314,18 +314,12 @@ constexpr int kRoundLanes = 8;
 
 /// Segments, and of each the record of a box, and a parameter near the one where it is nearest.
 struct alignas(64) RoundQueries {
-  double start[3][kRoundLanes];
-  double end[3][kRoundLanes];
+  const double* segment[kRoundLanes];  ///< start and end: six numbers
+  /// What takes eight numbers: distance and parameter, correctly rounded, and the points, of the
+  /// segment and of the box, as SegmentDistance has them.
+  double* rounded[kRoundLanes];
   double t[kRoundLanes];
   std::uint32_t record[kRoundLanes];
-};
-
-/// Of each: RoundedNearest.
-struct alignas(64) RoundedEach {
-  double distance[kRoundLanes];
-  double t[kRoundLanes];
-  double on_segment[3][kRoundLanes];
-  double on_box[3][kRoundLanes];
 };
 
 }  // namespace box_query::kernels

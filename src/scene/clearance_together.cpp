@@ -7,6 +7,7 @@
 #include <box_query/scene.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -27,6 +28,12 @@ void prefetch(const kernels::SceneView& view, std::uint32_t record) {
   __builtin_prefetch(&view.rests[record]);
 }
 
+/// The numbers of a clearance, which kernels write: distance, t and the points.
+double* numbersOf(Clearance& clearance) {
+  static_assert(sizeof(Clearance) == sizeof(std::size_t) + 8 * sizeof(double));
+  return &clearance.distance;
+}
+
 /// Clearances that are known but for their numbers, eight at a time.
 template <typename Impl>
 class Rounding {
@@ -36,49 +43,69 @@ class Rounding {
 
   /// @param number of the segment, and of its clearance
   void add(std::size_t number, const kernels::NearestOne& one) {
-    const auto k = static_cast<std::size_t>(count_);
-    for (int i = 0; i < 3; ++i) {
-      queries_.start[i][k] = segments_[number].start[i];
-      queries_.end[i][k] = segments_[number].end[i];
-    }
-    queries_.t[k] = one.t;
-    queries_.record[k] = one.record;
-    numbers_[k] = number;
-    if (++count_ == kernels::kRoundLanes) {
-      finish();
+    add({number, 0}, one.record, one.t);
+    while (count_ == kernels::kRoundLanes) {
+      round(true);
     }
   }
 
   void finish() {
-    if (count_ == 0) {
-      return;
+    if (count_ > 0) {
+      round(false);
     }
-    kernels::RoundedEach rounded;
-    const std::uint32_t certain = scene_.kernels.round_together(scene_.view, queries_, rounded);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(count_); ++k) {
-      Clearance& clearance = clearances_[numbers_[k]];
-      const std::size_t box = scene_.view.box_of_record[queries_.record[k]];
-      if (((certain >> k) & 1U) == 0) {
-        const kernels::NearestOne one = {queries_.record[k], queries_.t[k]};
-        clearance = scene_.clearanceTo(segments_[numbers_[k]],
-                                       nearestQuery(segments_[numbers_[k]], nullptr), one);
-        continue;
-      }
-      const auto point = [k](const double(*lanes)[kernels::kRoundLanes]) {
-        return Vector3(lanes[0][k], lanes[1][k], lanes[2][k]);
-      };
-      clearance = {box, rounded.distance[k], rounded.t[k], point(rounded.on_segment),
-                   point(rounded.on_box)};
-    }
-    count_ = 0;
   }
 
  private:
+  /// A guess from floats may be far from the nearest point, or beside another part of the box: what
+  /// is rounded from there is nearer.
+  static constexpr int kGuesses = 3;
+
+  struct Lane {
+    std::size_t number;
+    int guesses;
+  };
+
+  void add(const Lane& lane, std::uint32_t record, double t) {
+    const auto k = static_cast<std::size_t>(count_++);
+    queries_.segment[k] = &segments_[lane.number].start[0];
+    queries_.rounded[k] = numbersOf(clearances_[lane.number]);
+    queries_.t[k] = t;
+    queries_.record[k] = record;
+    lanes_[k] = {lane.number, lane.guesses + 1};
+    clearances_[lane.number].box = scene_.view.box_of_record[record];
+  }
+
+  /// @param again whether what is not certain may be guessed again with others
+  void round(bool again) {
+    const auto count = static_cast<std::size_t>(count_);
+    count_ = 0;
+    for (std::size_t k = count; k < kernels::kRoundLanes; ++k) {
+      queries_.segment[k] = queries_.segment[0];
+      queries_.rounded[k] = queries_.rounded[0];
+      queries_.t[k] = queries_.t[0];
+      queries_.record[k] = queries_.record[0];
+    }
+    std::uint32_t uncertain = ~scene_.kernels.round_together(scene_.view, queries_);
+    for (uncertain &= (1U << count) - 1; uncertain != 0; uncertain &= uncertain - 1) {
+      const auto k = static_cast<std::size_t>(__builtin_ctz(uncertain));
+      const Lane lane = lanes_[k];
+      Clearance& clearance = clearances_[lane.number];
+      const double next = std::min(std::max(clearance.t, 0.0), 1.0);
+      if (again && lane.guesses < kGuesses && std::fabs(next - queries_.t[k]) > 0.0) {
+        add(lane, queries_.record[k], next);
+      } else {
+        const Segment& segment = segments_[lane.number];
+        clearance = scene_.clearanceTo(segment, nearestQuery(segment, nullptr),
+                                       {queries_.record[k], queries_.t[k]});
+      }
+    }
+  }
+
   const Impl& scene_;
   const Segment* segments_;
   Clearance* clearances_;
   kernels::RoundQueries queries_{};
-  std::size_t numbers_[kernels::kRoundLanes];
+  Lane lanes_[kernels::kRoundLanes];
   int count_ = 0;
 };
 

@@ -78,24 +78,32 @@ TEST_P(RefineKernelTest, ErrorsEncloseTheExactDistance) {
   EXPECT_GT(refined, 1500);
 }
 
+/// What a kernel rounds eight distances to.
+struct Rounded {
+  struct Numbers {
+    double distance;
+    double t;
+    double on_segment[3];
+    double on_box[3];
+  } of[kernels::kRoundLanes];
+  std::uint32_t certain;
+};
+
 /// Eight segments and boxes for a kernel.
 struct Pairs {
   std::vector<Sample> samples;
   std::vector<kernels::BoxRecord> records;
   std::vector<kernels::AxisRests> rests;
+  Segment segments[kernels::kRoundLanes];
   kernels::RoundQueries queries{};
 
   void add(const kernels::Kernels& kernels, const Sample& sample, double t) {
     const std::size_t k = samples.size();
     const auto& box = std::get<OrientedBox>(sample.box);
-    const Segment segment = sample.segment();
-    for (int i = 0; i < 3; ++i) {
-      queries.start[i][k] = segment.start[i];
-      queries.end[i][k] = segment.end[i];
-    }
     queries.t[k] = t;
     queries.record[k] = static_cast<std::uint32_t>(k);
     samples.push_back(sample);
+    segments[k] = sample.segment();
     records.push_back(recordOf(PreparedBox(box)));
     rests.emplace_back();
     kernels.find_rests(box.orientation.coeffs().data(), records.back(), rests.back());
@@ -108,12 +116,20 @@ struct Pairs {
     view.rests = rests.data();
     return view;
   }
+
+  void round(const kernels::Kernels& kernels, Rounded& rounded) {
+    for (std::size_t k = 0; k < kernels::kRoundLanes; ++k) {
+      queries.segment[k] = &segments[k].start[0];
+      queries.rounded[k] = &rounded.of[k].distance;
+    }
+    rounded.certain = kernels.round_together(view(), queries);
+  }
 };
 
 /// One distance of many, as `distance()` has it, and the same if it is rounded alone.
 /// @return whether the kernel is certain alone too
 bool checkRounded(const kernels::Kernels& kernels, const Pairs& pairs, std::size_t k,
-                  const kernels::RoundedEach* of_many) {
+                  const Rounded::Numbers* of_many) {
   const Segment segment = pairs.samples[k].segment();
   const SegmentDistance d = distance(segment, std::get<OrientedBox>(pairs.samples[k].box));
   kernels::RoundedNearest alone;
@@ -136,8 +152,8 @@ bool checkRounded(const kernels::Kernels& kernels, const Pairs& pairs, std::size
   }
   if (of_many != nullptr) {
     expectSame(
-        of_many->distance[k], of_many->t[k], [&](int i) { return of_many->on_segment[i][k]; },
-        [&](int i) { return of_many->on_box[i][k]; });
+        of_many->distance, of_many->t, [&](int i) { return of_many->on_segment[i]; },
+        [&](int i) { return of_many->on_box[i]; });
   }
   return is_certain;
 }
@@ -147,13 +163,13 @@ struct Certain {
   int alone = 0;
 };
 
-void checkTogether(const kernels::Kernels& kernels, const Pairs& pairs, Certain& certain) {
-  kernels::RoundedEach rounded;
-  const std::uint32_t bits = kernels.round_together(pairs.view(), pairs.queries, rounded);
+void checkTogether(const kernels::Kernels& kernels, Pairs& pairs, Certain& certain) {
+  Rounded rounded;
+  pairs.round(kernels, rounded);
   for (std::size_t k = 0; k < pairs.samples.size(); ++k) {
-    const bool is_certain = ((bits >> k) & 1U) != 0;
+    const bool is_certain = ((rounded.certain >> k) & 1U) != 0;
     certain.together += is_certain ? 1 : 0;
-    certain.alone += checkRounded(kernels, pairs, k, is_certain ? &rounded : nullptr) ? 1 : 0;
+    certain.alone += checkRounded(kernels, pairs, k, is_certain ? &rounded.of[k] : nullptr) ? 1 : 0;
   }
 }
 
@@ -175,8 +191,9 @@ TEST_P(RefineKernelTest, NoDistanceFromABoxThatIsMetIsCertain) {
       const double guesses[3] = {estimate.guess.t, 0.0, 1.0};
       pairs.add(*GetParam(), sample, guesses[index % 3]);
       if (pairs.samples.size() == kernels::kRoundLanes) {
-        kernels::RoundedEach rounded;
-        EXPECT_EQ(0U, GetParam()->round_together(pairs.view(), pairs.queries, rounded));
+        Rounded rounded;
+        pairs.round(*GetParam(), rounded);
+        EXPECT_EQ(0U, rounded.certain);
         for (std::size_t k = 0; k < pairs.samples.size(); ++k) {
           kernels::RoundedNearest alone;
           EXPECT_FALSE(GetParam()->round_nearest(

@@ -185,10 +185,6 @@ static inline Double8 load8(const double* p) {
 static inline Double8 all8(double x) {
   return {{_mm256_set1_pd(x), _mm256_set1_pd(x)}};
 }
-static inline void store8(double* p, const Double8& a) {
-  _mm256_store_pd(p, a.v[0]);
-  _mm256_store_pd(p + 4, a.v[1]);
-}
 static inline Double8 operator+(const Double8& a, const Double8& b) {
   return {{_mm256_add_pd(a.v[0], b.v[0]), _mm256_add_pd(a.v[1], b.v[1])}};
 }
@@ -245,6 +241,20 @@ static inline void transpose(const Double4* rows, Double8* columns) {
     columns[1].v[half] = _mm256_permute2f128_pd(odd[0], odd[1], 0x20);
     columns[2].v[half] = _mm256_permute2f128_pd(even[0], even[1], 0x31);
     columns[3].v[half] = _mm256_permute2f128_pd(odd[0], odd[1], 0x31);
+  }
+}
+/// And back.
+static inline void transpose(const Double8* columns, Double4* rows) {
+  for (int half = 0; half < 2; ++half) {
+    const __m256d even[2] = {_mm256_unpacklo_pd(columns[0].v[half], columns[1].v[half]),
+                             _mm256_unpacklo_pd(columns[2].v[half], columns[3].v[half])};
+    const __m256d odd[2] = {_mm256_unpackhi_pd(columns[0].v[half], columns[1].v[half]),
+                            _mm256_unpackhi_pd(columns[2].v[half], columns[3].v[half])};
+    Double4* four = rows + 4 * half;
+    four[0].v = _mm256_permute2f128_pd(even[0], even[1], 0x20);
+    four[1].v = _mm256_permute2f128_pd(odd[0], odd[1], 0x20);
+    four[2].v = _mm256_permute2f128_pd(even[0], even[1], 0x31);
+    four[3].v = _mm256_permute2f128_pd(odd[0], odd[1], 0x31);
   }
 }
 

@@ -158,9 +158,6 @@ static inline Double8 load8(const double* p) {
 static inline Double8 all8(double x) {
   return {_mm512_set1_pd(x)};
 }
-static inline void store8(double* p, Double8 a) {
-  _mm512_store_pd(p, a.v);
-}
 static inline Double8 operator+(Double8 a, Double8 b) {
   return {_mm512_add_pd(a.v, b.v)};
 }
@@ -245,6 +242,23 @@ static inline void transpose(const Double4* rows, Double8* columns) {
   columns[1] = {_mm512_permutex2var_pd(odd[0], lows, odd[1])};
   columns[2] = {_mm512_permutex2var_pd(even[0], highs, even[1])};
   columns[3] = {_mm512_permutex2var_pd(odd[0], highs, odd[1])};
+}
+/// And back.
+static inline void transpose(const Double8* columns, Double4* rows) {
+  const __m512i lows = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+  const __m512i highs = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+  const __m512d even[2] = {_mm512_maskz_unpacklo_pd(kEightLanes, columns[0].v, columns[1].v),
+                           _mm512_maskz_unpacklo_pd(kEightLanes, columns[2].v, columns[3].v)};
+  const __m512d odd[2] = {_mm512_maskz_unpackhi_pd(kEightLanes, columns[0].v, columns[1].v),
+                          _mm512_maskz_unpackhi_pd(kEightLanes, columns[2].v, columns[3].v)};
+  const Double8 four[4] = {{_mm512_permutex2var_pd(even[0], lows, even[1])},
+                           {_mm512_permutex2var_pd(odd[0], lows, odd[1])},
+                           {_mm512_permutex2var_pd(even[0], highs, even[1])},
+                           {_mm512_permutex2var_pd(odd[0], highs, odd[1])}};
+  for (int k = 0; k < 4; ++k) {  // rows k and k + 4
+    rows[k] = firstHalf(four[k]);
+    rows[k + 4] = secondHalf(four[k]);
+  }
 }
 
 /// Lanes in which something holds.

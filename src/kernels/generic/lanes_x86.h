@@ -8,6 +8,10 @@ struct Double4 {
 static inline Double4 load4(const double* p) {
   return {_mm256_load_pd(p)};
 }
+/// From any address.
+static inline Double4 loadAny4(const double* p) {
+  return {_mm256_loadu_pd(p)};
+}
 static inline Double4 all4(double x) {
   return {_mm256_set1_pd(x)};
 }
@@ -168,6 +172,9 @@ static inline void transpose3(Double4* a) {
 }
 static inline void store4(double* p, Double4 a) {
   _mm256_store_pd(p, a.v);
+}
+static inline void storeAny4(double* p, Double4 a) {
+  _mm256_storeu_pd(p, a.v);
 }
 /// A bit for each of the first three lanes in which a >= b, and in which the sign is set.
 static inline unsigned notBelow3(Double4 a, Double4 b) {

@@ -60,15 +60,49 @@ static inline Mask8 isRounded(const Wide<Double8>& x, const Double8& error, Doub
   return value == x.hi + (x.lo - error);
 }
 
+/// Eight segments.
+struct SegmentsInLanes {
+  Double8 start[3];
+  Double8 end[3];
+
+  explicit SegmentsInLanes(const double* const* segments) {
+    Double4 rows[kRoundLanes];
+    Double8 columns[4];
+    for (int k = 0; k < kRoundLanes; ++k) {
+      rows[k] = loadAny4(segments[k]);
+    }
+    transpose(rows, columns);
+    for (int j = 0; j < 3; ++j) {
+      start[j] = columns[j];
+    }
+    for (int k = 0; k < kRoundLanes; ++k) {
+      rows[k] = loadAny4(segments[k] + 2);
+    }
+    transpose(rows, columns);
+    for (int j = 0; j < 3; ++j) {
+      end[j] = columns[j + 1];
+    }
+  }
+};
+
+/// @param numbers of each eight
+static inline void storeEach(const Double8* numbers, double* const* to) {
+  Double4 rows[kRoundLanes];
+  for (int half = 0; half < 2; ++half) {
+    transpose(numbers + 4 * half, rows);
+    for (int k = 0; k < kRoundLanes; ++k) {
+      storeAny4(to[k] + 4 * half, rows[k]);
+    }
+  }
+}
+
 /// The points as setClosestPoints() has them, operation for operation.
-static inline void setClosestPoints(const BoxesInLanes& boxes, const RoundQueries& queries,
-                                    const Double8& t, RoundedEach& rounded) {
-  Double8 on_segment[3];
+static inline void setClosestPoints(const BoxesInLanes& boxes, const SegmentsInLanes& segments,
+                                    const Double8& t, Double8* on_segment, Double8* on_box) {
   Double8 from_center[3];
   for (int j = 0; j < 3; ++j) {
-    on_segment[j] = (all8(1.0) - t) * load8(queries.start[j]) + t * load8(queries.end[j]);
+    on_segment[j] = (all8(1.0) - t) * segments.start[j] + t * segments.end[j];
     from_center[j] = on_segment[j] - boxes.center[j];
-    store8(rounded.on_segment[j], on_segment[j]);
   }
   Double8 local[3];
   Mask8 inside = boxes.oriented;
@@ -80,17 +114,17 @@ static inline void setClosestPoints(const BoxesInLanes& boxes, const RoundQuerie
     inside = inside & (local[i] == along);
   }
   for (int j = 0; j < 3; ++j) {
-    const Double8 on_box =
+    const Double8 outside =
         boxes.center[j] + (boxes.axis[0][j].hi * local[0] + boxes.axis[1][j].hi * local[1] +
                            boxes.axis[2][j].hi * local[2]);
-    store8(rounded.on_box[j], either(inside, on_segment[j], on_box));
+    on_box[j] = either(inside, on_segment[j], outside);
   }
 }
 
-static std::uint32_t roundTogether(const SceneView& view, const RoundQueries& queries,
-                                   RoundedEach& rounded) {
+static std::uint32_t roundTogether(const SceneView& view, const RoundQueries& queries) {
   using W = Wide<Double8>;
   const BoxesInLanes boxes(view, queries.record);
+  const SegmentsInLanes segments(queries.segment);
   const Double8 zero = all8(0.0);
   const Double8 one = all8(1.0);
   const Double8 t = load8(queries.t);
@@ -100,9 +134,8 @@ static std::uint32_t roundTogether(const SceneView& view, const RoundQueries& qu
   Double8 sizes[3];
   Double8 lengths[3];
   for (int j = 0; j < 3; ++j) {
-    const Double8 start = load8(queries.start[j]);
-    from_center[j] = twoSum(start, negated(boxes.center[j]));
-    from_start[j] = twoSum(load8(queries.end[j]), negated(start));
+    from_center[j] = twoSum(segments.start[j], negated(boxes.center[j]));
+    from_start[j] = twoSum(segments.end[j], negated(segments.start[j]));
     lengths[j] = magnitude(from_start[j].hi);
     sizes[j] = magnitude(from_center[j].hi) + boxes.extents[j] + lengths[j];
   }
@@ -148,11 +181,10 @@ static std::uint32_t roundTogether(const SceneView& view, const RoundQueries& qu
   const Double8 inverse = zeroWhere(at_an_end, one / squared.curvature);
   const Lowest<Double8> lowest = lowestOf(squared, inverse, t, eta, all);
 
-  Double8 rounded_t;
-  Double8 rounded_distance;
+  Double8 rounded[8];
+  Double8& rounded_t = rounded[1];
   Mask8 certain = isRounded(lowest.t, lowest.t_error, rounded_t) &
-                  isRounded(lowest.distance, lowest.distance_error, rounded_distance) &
-                  boxes.oriented;
+                  isRounded(lowest.distance, lowest.distance_error, rounded[0]) & boxes.oriented;
   certain = certain & (at_an_end | ((rounded_t > zero) & (one > rounded_t)));
   certain = certain & (scale > all8(exact::bounds::kSmallestScale)) &
             (all8(exact::bounds::kLargestScale) > scale);
@@ -161,8 +193,7 @@ static std::uint32_t roundTogether(const SceneView& view, const RoundQueries& qu
     const Double8 margin = all8(2.0) * (magnitude(lowest.change) * drift[i]) + slack;
     certain = certain & (magnitude(room[i]) > margin);
   }
-  store8(rounded.t, rounded_t);
-  store8(rounded.distance, rounded_distance);
-  setClosestPoints(boxes, queries, rounded_t, rounded);
+  setClosestPoints(boxes, segments, rounded_t, rounded + 2, rounded + 5);
+  storeEach(rounded, queries.rounded);
   return bitsOf(certain);
 }
