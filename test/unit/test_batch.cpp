@@ -273,7 +273,12 @@ std::vector<std::vector<Box>> scenesOfEachKind() {
     return boxes;
   };
   std::vector<std::vector<Box>> scenes = {
-      {}, scattered(10, 5.0), scattered(100, 10.0), scattered(300, 15.0), scattered(9000, 40.0)};
+      {},
+      scattered(10, 5.0),
+      scattered(100, 10.0),
+      scattered(300, 15.0),
+      scattered(9000, 40.0),
+      scattered(60000, 50.0)};  // more than a cache holds
   scenes.push_back(scattered(300, 15.0));
   scenes.back()[7] = AlignedBox{{-1e300, 10.0, -1e300}, {1e300, 11.0, 1e300}};
   // More that are entered at once than any kernel keeps.
@@ -296,6 +301,14 @@ TEST(Batch, OfAnySceneAndAnyRayIsThatOfSingleRays) {
       rays.push_back({-1e9 * toward, 1e25 * toward});
       rays.push_back({from, Vector3::Unit(sampler.index(3))});
       rays.push_back({Vector3::Zero(), Vector3(1.0, sampler.uniform(-0.5, 0.5), 0.0)});
+    }
+    std::vector<Segment> segments;
+    for (const Ray& ray : rays) {
+      segments.push_back({ray.origin, ray.origin + 9.0 * ray.direction});
+    }
+    const auto clear = isClearEach(scene, segments, 0.0);
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      ASSERT_EQ(clear[i] != 0, scene.isClear(segments[i], 0.0)) << "segment " << i;
     }
     for (const double range : {6.0, std::numeric_limits<double>::infinity()}) {
       const auto hits = castEach(scene, rays, {range});
