@@ -272,13 +272,12 @@ std::vector<std::vector<Box>> scenesOfEachKind() {
     }
     return boxes;
   };
-  std::vector<std::vector<Box>> scenes = {
-      {},
-      scattered(10, 5.0),
-      scattered(100, 10.0),
-      scattered(300, 15.0),
-      scattered(9000, 40.0),
-      scattered(60000, 50.0)};  // more than a cache holds
+  std::vector<std::vector<Box>> scenes = {{},
+                                          scattered(10, 5.0),
+                                          scattered(100, 10.0),
+                                          scattered(300, 15.0),
+                                          scattered(9000, 40.0),
+                                          scattered(60000, 50.0)};  // more than a cache holds
   scenes.push_back(scattered(300, 15.0));
   scenes.back()[7] = AlignedBox{{-1e300, 10.0, -1e300}, {1e300, 11.0, 1e300}};
   // More that are entered at once than any kernel keeps.

@@ -41,9 +41,9 @@ class TreeSearch : LaneSearch<What> {
 
   /// Lists the nodes below roots that rays may meet.
   void begin(std::size_t first, int count) {
-    fit_ = Base::takeUp(first, count);
-    unfit_ = ((1U << count) - 1) & ~fit_;
-    active_ = beginStretch() & fit_;
+    const std::uint32_t fit = Base::takeUp(first, count);
+    unfit_ = ((1U << count) - 1) & ~fit;
+    active_ = beginStretch() & fit;
     in_memory_ = RaysOfLanes(lanes_);
     searchRoots();
   }
@@ -186,9 +186,8 @@ class TreeSearch : LaneSearch<What> {
     }
   }
 
-  std::uint32_t fit_;
-  std::uint32_t unfit_;
-  std::uint32_t active_;
+  std::uint32_t unfit_ = 0;   ///< a bit for each ray that is to be asked alone
+  std::uint32_t active_ = 0;  ///< and for each that enters the bounds of the scene
   RaysOfLanes in_memory_;
   alignas(64) float whole_[kSlots];  ///< where rays end
   /// Of each level what is listed below its nodes: nodes, or records, with their rays.
