@@ -15,17 +15,30 @@
 #include <vector>
 
 #include <boost/multiprecision/cpp_int.hpp>
+#include <boost/rational.hpp>
 #include <gtest/gtest.h>
 
 namespace box_query {
 namespace {
 
-using Rational = boost::multiprecision::cpp_rational;
+/// Without expression templates, of which that of gcd() refers to what is gone.
+using Integer = boost::multiprecision::number<boost::multiprecision::cpp_int_backend<>,
+                                              boost::multiprecision::et_off>;
+using Rational = boost::rational<Integer>;
 using Rational3 = std::array<Rational, 3>;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kTiny = std::numeric_limits<double>::denorm_min();
 constexpr double kHuge = std::numeric_limits<double>::max();
+
+/// A finite double as it is.
+Rational rational(double x) {
+  constexpr int kDigits = std::numeric_limits<double>::digits;
+  int exponent = 0;
+  const Integer digits(std::ldexp(std::frexp(x, &exponent), kDigits));
+  exponent -= kDigits;
+  return exponent < 0 ? Rational(digits, Integer(1) << -exponent) : Rational(digits << exponent);
+}
 
 /// A segment y + t v and a box |x_i - middle_i| <= half_i, in the frame of the box.
 struct Problem {
@@ -36,22 +49,22 @@ Problem problemOf(const Segment& segment, const AlignedBox& box) {
   Problem p;
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    p.y[k] = Rational(segment.start[i]);
-    p.v[k] = Rational(segment.end[i]) - Rational(segment.start[i]);
-    p.lo[k] = Rational(box.min[i]);
-    p.hi[k] = Rational(box.max[i]);
+    p.y[k] = rational(segment.start[i]);
+    p.v[k] = rational(segment.end[i]) - rational(segment.start[i]);
+    p.lo[k] = rational(box.min[i]);
+    p.hi[k] = rational(box.max[i]);
   }
   return p;
 }
 
 /// Rotates with q^-1 p q, not with a matrix.
 Rational3 rotatedBack(const Quaternion& orientation, const Rational3& p) {
-  const Rational w(orientation.w());
-  const Rational3 u{-Rational(orientation.x()), -Rational(orientation.y()),
-                    -Rational(orientation.z())};
+  const Rational w = rational(orientation.w());
+  const Rational3 u{-rational(orientation.x()), -rational(orientation.y()),
+                    -rational(orientation.z())};
   const auto cross = [](const Rational3& a, const Rational3& b) {
-    return Rational3{Rational(a[1] * b[2] - a[2] * b[1]), Rational(a[2] * b[0] - a[0] * b[2]),
-                     Rational(a[0] * b[1] - a[1] * b[0])};
+    return Rational3{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                     a[0] * b[1] - a[1] * b[0]};
   };
   const Rational norm = w * w + u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
   const Rational3 a = cross(u, p);
@@ -68,9 +81,9 @@ Problem problemOf(const Segment& segment, const OrientedBox& box) {
   Rational3 from_center, direction;
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    from_center[k] = Rational(segment.start[i]) - Rational(box.center[i]);
-    direction[k] = Rational(segment.end[i]) - Rational(segment.start[i]);
-    p.hi[k] = Rational(box.half_extents[i]);
+    from_center[k] = rational(segment.start[i]) - rational(box.center[i]);
+    direction[k] = rational(segment.end[i]) - rational(segment.start[i]);
+    p.hi[k] = rational(box.half_extents[i]);
     p.lo[k] = -p.hi[k];
   }
   p.y = rotatedBack(box.orientation, from_center);
@@ -82,8 +95,7 @@ Rational squaredDistance(const Problem& p, const Rational& t) {
   Rational sum = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const Rational x = p.y[i] + t * p.v[i];
-    const Rational excess =
-        x > p.hi[i] ? Rational(x - p.hi[i]) : (x < p.lo[i] ? Rational(p.lo[i] - x) : Rational(0));
+    const Rational excess = x > p.hi[i] ? x - p.hi[i] : (x < p.lo[i] ? p.lo[i] - x : Rational(0));
     sum += excess * excess;
   }
   return sum;
@@ -132,9 +144,9 @@ Minimum bruteForce(const Problem& p) {
 Rational halfWay(double x, double towards) {
   const double next = std::nextafter(x, towards);
   const Rational beyond = std::isinf(next)
-                              ? Rational(x) + (Rational(x) - Rational(std::nextafter(x, 0.0)))
-                              : Rational(next);
-  return (Rational(x) + beyond) / 2;
+                              ? rational(x) + (rational(x) - rational(std::nextafter(x, 0.0)))
+                              : rational(next);
+  return (rational(x) + beyond) / 2;
 }
 
 bool isEven(double x) {
@@ -145,7 +157,7 @@ bool isEven(double x) {
 
 /// Whether x >= 0 is sqrt(squared) (power 2), or squared itself (power 1), rounded to nearest even.
 bool isRounded(double x, const Rational& exact, int power) {
-  const auto raised = [power](const Rational& y) { return power == 2 ? Rational(y * y) : y; };
+  const auto raised = [power](const Rational& y) { return power == 2 ? y * y : y; };
   if (std::isinf(x)) {
     return raised(halfWay(kHuge, kInf)) <= exact;
   }
@@ -162,9 +174,9 @@ bool isRounded(double x, const Rational& exact, int power) {
 
 /// Whether t is the largest double not greater than the first parameter within the radius.
 bool isFirstWithin(const Problem& p, double t, double radius, const Minimum& minimum) {
-  const Rational limit = Rational(radius) * Rational(radius);
+  const Rational limit = rational(radius) * rational(radius);
   const auto isNotAfter = [&](double x) {
-    return Rational(x) <= minimum.t && squaredDistance(p, Rational(x)) >= limit;
+    return rational(x) <= minimum.t && squaredDistance(p, rational(x)) >= limit;
   };
   if (squaredDistance(p, 0) <= limit) {
     return t == 0.0;
@@ -306,7 +318,7 @@ void check(const Segment& segment, const AnyBox& box, Source& source, Tally& tal
       continue;
     }
     SCOPED_TRACE(testing::Message() << "radius " << radius);
-    const bool clear = minimum.squared > Rational(radius) * Rational(radius);
+    const bool clear = minimum.squared > rational(radius) * rational(radius);
     ASSERT_EQ(isClear(segment, box, radius), clear);
     const double t = blockedAt(segment, box, radius);
     if (clear) {
