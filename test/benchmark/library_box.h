@@ -13,11 +13,10 @@ struct LibraryBox {
   Prepared<OrientedSlabs> filter;
   std::unique_ptr<const OrientedBox> slow;
 
+  explicit LibraryBox(const OrientedBox& box)
+      : filter(prepared(box)), slow(std::make_unique<const OrientedBox>(box)) {}
+
   const OrientedBox& box() const { return *slow; }
 };
-
-inline LibraryBox libraryBox(const OrientedBox& box) {
-  return {prepared(box), std::make_unique<const OrientedBox>(box)};
-}
 
 }  // namespace box_query::benchmark

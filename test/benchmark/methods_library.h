@@ -17,7 +17,7 @@ struct LibraryTest {
   static constexpr bool kGivesT = false;
   static constexpr bool kLooksAtT = false;
   using Prepared = LibraryBox;
-  static Prepared prepare(const OrientedBox& box) { return libraryBox(box); }
+  static Prepared prepare(const OrientedBox& box) { return LibraryBox(box); }
   template <typename Component>
   static Answer ask(const Component& component, const Prepared& box) {
     return {meets(component, box.box(), box.filter)};
@@ -30,7 +30,7 @@ struct LibraryRounded {
   static constexpr bool kGivesT = true;
   static constexpr bool kLooksAtT = true;
   using Prepared = LibraryBox;
-  static Prepared prepare(const OrientedBox& box) { return libraryBox(box); }
+  static Prepared prepare(const OrientedBox& box) { return LibraryBox(box); }
   template <typename Component>
   static Answer ask(const Component& component, const Prepared& box) {
     Solution solution = solve(component, doubleComponent(component), box.box());
@@ -47,7 +47,7 @@ struct LibraryEnclosed {
   static constexpr bool kGivesT = true;
   static constexpr bool kLooksAtT = true;
   using Prepared = LibraryBox;
-  static Prepared prepare(const OrientedBox& box) { return libraryBox(box); }
+  static Prepared prepare(const OrientedBox& box) { return LibraryBox(box); }
   template <typename Component>
   static Answer ask(const Component& component, const Prepared& box) {
     return ask(component, box.box(), box.filter);

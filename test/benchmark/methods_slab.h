@@ -121,7 +121,7 @@ struct DoubleSlab {
   static constexpr bool kGivesT = true;
   static constexpr bool kLooksAtT = false;
   using Prepared = LibraryBox;
-  static Prepared prepare(const OrientedBox& box) { return libraryBox(box); }
+  static Prepared prepare(const OrientedBox& box) { return LibraryBox(box); }
   template <typename Component>
   static Answer ask(const Component& component, const Prepared& box) {
     return clipBySlabs<double, NoPad>(slabComponent<double>(component), box.filter.slabs);

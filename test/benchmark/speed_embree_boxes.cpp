@@ -4,6 +4,7 @@
 
 #include <box_query/distance.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -124,7 +125,8 @@ class EmbreeBoxes final : public Embree {
   void askEach(Question question, const std::vector<Ray>& rays, std::size_t way,
                std::vector<SpeedAnswer>& answers) const override {
     if (question == Question::kClearance) {
-      SpeedMethod::askEach(question, rays, way, answers);
+      std::transform(rays.begin(), rays.end(), answers.begin(),
+                     [&](const Ray& ray) { return ask(question, ray); });
     } else {
       Embree::askEach(question, rays, way, answers);
     }

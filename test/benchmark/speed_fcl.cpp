@@ -21,6 +21,7 @@ class Fcl final : public SpeedMethod {
       const Vector3 sides = 2.0 * box.half_extents;
       objects_.push_back(
           std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Boxd>(sides), pose));
+      // NOLINTNEXTLINE(performance-no-int-to-ptr): a number, followed by nobody
       objects_.back()->setUserData(reinterpret_cast<void*>(objects_.size() - 1));
       all.push_back(objects_.back().get());
     }

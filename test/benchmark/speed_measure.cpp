@@ -54,7 +54,7 @@ class Measurement {
     for (std::size_t m = 0; m < kinds_.size(); ++m) {
       if (!methods_[m].empty() && methods_[m].front()->canAnswer(question)) {
         contenders.push_back({m, kinds_[m].name});
-        passes.push_back([this, m, question] { return pass(m, question); });
+        passes.emplace_back([this, m, question] { return pass(m, question); });
       }
     }
     time(question, Mode::kSingle, contenders, passes, rays_);
@@ -97,7 +97,7 @@ class Measurement {
       if (kinds_[m].is_built && !methods_[m].empty() &&
           (m == 0 || boxesOfAScene() <= kMostToBuild)) {
         contenders.push_back({m, kinds_[m].name});
-        passes.push_back([this, m] {
+        passes.emplace_back([this, m] {
           std::uint64_t made = 0;
           for (const SpeedScene& scene : workload_.scenes) {
             made += kinds_[m].make(scene.boxes) != nullptr ? 1 : 0;
@@ -124,7 +124,7 @@ class Measurement {
     for (std::size_t m = 0; m < kinds_.size(); ++m) {
       if (!methods_[m].empty() && methods_[m].front()->canUpdate()) {
         contenders.push_back({m, kinds_[m].name});
-        passes.push_back([&, m] {
+        passes.emplace_back([&, m] {
           std::uint64_t sum = 0;
           for (std::size_t s = 0; s < moved.size(); ++s) {
             sum += methods_[m][s]->update(moved[s]);
@@ -155,7 +155,7 @@ class Measurement {
     std::vector<Pass> passes;
     for (std::size_t k = 0; k < contenders.size(); ++k) {
       answers[k].resize(rays.size());
-      passes.push_back([&, k] {
+      passes.emplace_back([&, k] {
         methods_[contenders[k].method].front()->askEach(question, rays, contenders[k].way,
                                                         answers[k]);
         // (All are compared later, so that none is left out; to add them up would count as work.)

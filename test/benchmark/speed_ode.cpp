@@ -15,6 +15,8 @@ namespace {
 struct Library {
   Library() { dInitODE2(0); }
   ~Library() { dCloseODE(); }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
 };
 
 class Ode final : public SpeedMethod {
@@ -33,9 +35,10 @@ class Ode final : public SpeedMethod {
       const Vector3 full = 2.0 * box.half_extents;
       const Quaternion q = box.orientation.normalized();
       const dQuaternion turned = {q.w(), q.x(), q.y(), q.z()};
-      const dGeomID geom = dCreateBox(space_, full.x(), full.y(), full.z());
+      auto* const geom = dCreateBox(space_, full.x(), full.y(), full.z());
       dGeomSetPosition(geom, box.center.x(), box.center.y(), box.center.z());
       dGeomSetQuaternion(geom, turned);
+      // NOLINTNEXTLINE(performance-no-int-to-ptr): a number, followed by nobody
       dGeomSetData(geom, reinterpret_cast<void*>(number_++));
     }
     ray_ = dCreateRay(nullptr, kRange);
@@ -87,7 +90,7 @@ class Ode final : public SpeedMethod {
     ++found.count;
     if (contact.depth < found.depth) {
       found.depth = contact.depth;
-      const dGeomID box = dGeomGetClass(a) == dBoxClass ? a : b;
+      auto* const box = dGeomGetClass(a) == dBoxClass ? a : b;
       found.box = reinterpret_cast<std::size_t>(dGeomGetData(box));
     }
   }

@@ -46,7 +46,7 @@ void writeCsv(const std::vector<SpeedRow>& rows, std::ostream& out) {
          "hits,wrong,nodes,boxes_in_double,turned_boxes,left_open,exact,rounded_exactly\n";
   for (const SpeedRow& row : rows) {
     const Timing& timing = row.timing;
-    out << format("%s,%zu,\"%s\",%s,\"%s\",%.1f,%.1f,%.1f,%.3f,%.3f,%.3f,%zu,%zu,%zu,",
+    out << format(R"(%s,%zu,"%s",%s,"%s",%.1f,%.1f,%.1f,%.3f,%.3f,%.3f,%zu,%zu,%zu,)",
                   row.workload.c_str(), row.boxes, nameOf(row.question), nameOf(row.mode),
                   row.method.c_str(), timing.ns.median, timing.ns.low, timing.ns.high,
                   timing.ratio.median, timing.ratio.low, timing.ratio.high, row.asked, row.hits,

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace box_query::benchmark {
 namespace {
@@ -110,7 +111,7 @@ void closestOfEach(const Slabs8* blocks, std::size_t count, const SlabComponent<
   const Double8 zero = {};
   const Index8 lanes = {0, 1, 2, 3, 4, 5, 6, 7};
   Double8 best = zero + ray.t_max;
-  Index8 box = lanes - lanes - 1;
+  Index8 box = Index8{} - 1;  // none
   for (std::size_t b = 0; b < count; ++b) {
     const Slabs8& block = blocks[b];
     const Double8 p[3] = {ray.origin[0] - block.center[0], ray.origin[1] - block.center[1],
@@ -212,7 +213,7 @@ class FindScan final : public SpeedMethod {
 
 class ExactScan final : public SpeedMethod {
  public:
-  explicit ExactScan(const std::vector<OrientedBox>& boxes) : boxes_(boxes) {}
+  explicit ExactScan(std::vector<OrientedBox> boxes) : boxes_(std::move(boxes)) {}
 
   bool canAnswer(Question question) const override { return question == Question::kClearance; }
   SpeedAnswer ask(Question /*question*/, const Ray& ray) const override {
