@@ -8,6 +8,8 @@
 
 #include <box_query/geometry.h>
 
+#include <array>
+
 namespace box_query::stress {
 
 /// One box, and a component as line, ray and segment: (origin, direction) and (origin, end).
@@ -38,7 +40,7 @@ class Target {
   Box box_;
   Vector3 center_;
   Vector3 half_extents_;
-  Vector3 columns_[3];
+  std::array<Vector3, 3> columns_;
 };
 
 /// A box with this center, rotation and size; as an aligned box the rotation is left out.

@@ -168,7 +168,7 @@ TEST(BoxStore, TellsWhenWordsThatMayWaitAreWantedNoMore) {
   EXPECT_FALSE(store.wants(first));
   EXPECT_TRUE(is_news());
   store.place(Word(other), "");
-  for (double x = 3; x < 9; ++x) {
+  for (int x = 3; x < 9; ++x) {
     say(store, boxAt(x));
   }
   EXPECT_FALSE(is_news()) << "words that are placed at once overtake none";
