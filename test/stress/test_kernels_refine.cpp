@@ -13,6 +13,7 @@
 #include <box_query/distance.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <variant>
 #include <vector>
@@ -94,7 +95,7 @@ struct Pairs {
   std::vector<Sample> samples;
   std::vector<kernels::BoxRecord> records;
   std::vector<kernels::AxisRests> rests;
-  Segment segments[kernels::kRoundLanes];
+  std::array<Segment, kernels::kRoundLanes> segments;
   kernels::RoundQueries queries{};
 
   void add(const kernels::Kernels& kernels, const Sample& sample, double t) {
@@ -119,7 +120,7 @@ struct Pairs {
 
   void round(const kernels::Kernels& kernels, Rounded& rounded) {
     for (std::size_t k = 0; k < kernels::kRoundLanes; ++k) {
-      queries.segment[k] = &segments[k].start[0];
+      queries.segment[k] = segments[k].start.data();
       queries.rounded[k] = &rounded.of[k].distance;
     }
     rounded.certain = kernels.round_together(view(), queries);
