@@ -23,9 +23,8 @@ static void finish(const SceneView& view, const RayQueries& queries, Unfinished&
   unfinished.count = 0;
 }
 
-/// @param kFetched of the records that are listed, so many are fetched at once; others as many
-/// ahead
-template <typename What, int kFetched>
+/// @param kIsLarge whether most of the tree has to come from memory
+template <typename What, bool kIsLarge>
 class TreeSearch : LaneSearch<What> {
   using Base = LaneSearch<What>;
   using Base::begun_;
@@ -97,6 +96,9 @@ class TreeSearch : LaneSearch<What> {
   }
 
  private:
+  /// Of the records that are listed, so many are fetched at once; others as many ahead.
+  static constexpr int kFetched = kIsLarge ? 4 * kAhead : kAhead;
+
   /// Whether nothing that matters lies behind the first stretch of a ray.
   bool isDone(int ray, bool is_begun) {
     const float end = in_memory_.end[ray];
@@ -159,7 +161,14 @@ class TreeSearch : LaneSearch<What> {
   void setListed(int level, int listed) {
     listed_[level] = listed;
     for (int i = 0; level == 0 && i < listed && i < kFetched; ++i) {
-      fetchRecord(view_, lists_[0][i]);
+      fetchListed(i);
+    }
+  }
+
+  void fetchListed(int i) const {
+    fetchRecord(view_, lists_[0][i]);
+    if (kIsLarge) {
+      prefetch(view_.box_of_record + (lists_[0][i] & kLargestNumber));
     }
   }
 
@@ -175,7 +184,7 @@ class TreeSearch : LaneSearch<What> {
   void visitAll() {
     for (int i = 0; i < listed_[0]; ++i) {
       if (i + kFetched < listed_[0]) {
-        fetchRecord(view_, lists_[0][i + kFetched]);
+        fetchListed(i + kFetched);
       }
       const std::uint32_t entry = lists_[0][i];
       const auto ray = static_cast<int>(entry >> kNumberBits);
@@ -204,7 +213,7 @@ static inline int raysFrom(const RayQueries& queries, std::size_t first) {
 
 template <typename What>
 static void searchInLanes(const SceneView& view, const RayQueries& queries, const Delivery& to) {
-  TreeSearch<What, kAhead> search(view, queries, to);
+  TreeSearch<What, false> search(view, queries, to);
   Unfinished unfinished;
   for (std::size_t first = 0; first < queries.count; first += kSlots) {
     if (!unfinished.hasRoomForAll()) {
@@ -221,7 +230,7 @@ static void searchInLanes(const SceneView& view, const RayQueries& queries, cons
 
 template <typename What>
 static void searchInTurns(const SceneView& view, const RayQueries& queries, const Delivery& to) {
-  using Search = TreeSearch<What, 4 * kAhead>;
+  using Search = TreeSearch<What, true>;
   Search one(view, queries, to);
   Search other(view, queries, to);
   Unfinished unfinished;
