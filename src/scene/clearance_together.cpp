@@ -43,6 +43,11 @@ class Rounding {
 
   /// @param number of the segment, and of its clearance
   void add(std::size_t number, const kernels::NearestOne& one) {
+    if (scene_.view.records[one.record].isAligned()) {  // kernels leave it to others
+      clearances_[number] =
+          scene_.clearanceTo(segments_[number], scene_.view.box_of_record[one.record]);
+      return;
+    }
     add({number, 0}, one.record, one.t);
     while (count_ == kernels::kRoundLanes) {
       round(true);
