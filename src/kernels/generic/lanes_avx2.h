@@ -229,32 +229,36 @@ static inline Double8 squareRoot(const Double8& a) {
   return {{_mm256_sqrt_pd(a.v[0]), _mm256_sqrt_pd(a.v[1])}};
 }
 
-/// Lane i of the k-th of eight is lane k of the i-th of four then.
+/// Lane i of the k-th is lane k of the i-th then.
+static inline void transpose4(const __m256d (&from)[4], __m256d (&to)[4]) {
+  const __m256d even[2] = {_mm256_unpacklo_pd(from[0], from[1]),
+                           _mm256_unpacklo_pd(from[2], from[3])};
+  const __m256d odd[2] = {_mm256_unpackhi_pd(from[0], from[1]),
+                          _mm256_unpackhi_pd(from[2], from[3])};
+  to[0] = _mm256_permute2f128_pd(even[0], even[1], 0x20);
+  to[1] = _mm256_permute2f128_pd(odd[0], odd[1], 0x20);
+  to[2] = _mm256_permute2f128_pd(even[0], even[1], 0x31);
+  to[3] = _mm256_permute2f128_pd(odd[0], odd[1], 0x31);
+}
+/// The same of eight rows and four columns, and back.
 static inline void transpose(const Double4* rows, Double8* columns) {
   for (int half = 0; half < 2; ++half) {
     const Double4* four = rows + 4 * half;
-    const __m256d even[2] = {_mm256_unpacklo_pd(four[0].v, four[1].v),
-                             _mm256_unpacklo_pd(four[2].v, four[3].v)};
-    const __m256d odd[2] = {_mm256_unpackhi_pd(four[0].v, four[1].v),
-                            _mm256_unpackhi_pd(four[2].v, four[3].v)};
-    columns[0].v[half] = _mm256_permute2f128_pd(even[0], even[1], 0x20);
-    columns[1].v[half] = _mm256_permute2f128_pd(odd[0], odd[1], 0x20);
-    columns[2].v[half] = _mm256_permute2f128_pd(even[0], even[1], 0x31);
-    columns[3].v[half] = _mm256_permute2f128_pd(odd[0], odd[1], 0x31);
+    __m256d to[4];
+    transpose4({four[0].v, four[1].v, four[2].v, four[3].v}, to);
+    for (int k = 0; k < 4; ++k) {
+      columns[k].v[half] = to[k];
+    }
   }
 }
-/// And back.
 static inline void transpose(const Double8* columns, Double4* rows) {
   for (int half = 0; half < 2; ++half) {
-    const __m256d even[2] = {_mm256_unpacklo_pd(columns[0].v[half], columns[1].v[half]),
-                             _mm256_unpacklo_pd(columns[2].v[half], columns[3].v[half])};
-    const __m256d odd[2] = {_mm256_unpackhi_pd(columns[0].v[half], columns[1].v[half]),
-                            _mm256_unpackhi_pd(columns[2].v[half], columns[3].v[half])};
-    Double4* four = rows + 4 * half;
-    four[0].v = _mm256_permute2f128_pd(even[0], even[1], 0x20);
-    four[1].v = _mm256_permute2f128_pd(odd[0], odd[1], 0x20);
-    four[2].v = _mm256_permute2f128_pd(even[0], even[1], 0x31);
-    four[3].v = _mm256_permute2f128_pd(odd[0], odd[1], 0x31);
+    __m256d to[4];
+    transpose4({columns[0].v[half], columns[1].v[half], columns[2].v[half], columns[3].v[half]},
+               to);
+    for (int k = 0; k < 4; ++k) {
+      rows[4 * half + k].v = to[k];
+    }
   }
 }
 

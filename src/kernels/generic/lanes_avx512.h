@@ -226,36 +226,29 @@ static inline Double8 turnedTwice(Double8 a) {
   return {_mm512_maskz_permutex_pd(kEightLanes, a.v, _MM_SHUFFLE(3, 1, 0, 2))};
 }
 
-/// Lane i of the k-th of eight is lane k of the i-th of four then.
-static inline void transpose(const Double4* rows, Double8* columns) {
+/// Of each half: lane i of the k-th is lane k of the i-th then.
+static inline void transposeHalves(const Double8 (&from)[4], Double8* to) {
   const __m512i lows = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
   const __m512i highs = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
-  Double8 four[4];  // rows k and k + 4
-  for (int k = 0; k < 4; ++k) {
-    four[k] = joined(rows[k], rows[k + 4]);
-  }
-  const __m512d even[2] = {_mm512_maskz_unpacklo_pd(kEightLanes, four[0].v, four[1].v),
-                           _mm512_maskz_unpacklo_pd(kEightLanes, four[2].v, four[3].v)};
-  const __m512d odd[2] = {_mm512_maskz_unpackhi_pd(kEightLanes, four[0].v, four[1].v),
-                          _mm512_maskz_unpackhi_pd(kEightLanes, four[2].v, four[3].v)};
-  columns[0] = {_mm512_permutex2var_pd(even[0], lows, even[1])};
-  columns[1] = {_mm512_permutex2var_pd(odd[0], lows, odd[1])};
-  columns[2] = {_mm512_permutex2var_pd(even[0], highs, even[1])};
-  columns[3] = {_mm512_permutex2var_pd(odd[0], highs, odd[1])};
+  const __m512d even[2] = {_mm512_maskz_unpacklo_pd(kEightLanes, from[0].v, from[1].v),
+                           _mm512_maskz_unpacklo_pd(kEightLanes, from[2].v, from[3].v)};
+  const __m512d odd[2] = {_mm512_maskz_unpackhi_pd(kEightLanes, from[0].v, from[1].v),
+                          _mm512_maskz_unpackhi_pd(kEightLanes, from[2].v, from[3].v)};
+  to[0] = {_mm512_permutex2var_pd(even[0], lows, even[1])};
+  to[1] = {_mm512_permutex2var_pd(odd[0], lows, odd[1])};
+  to[2] = {_mm512_permutex2var_pd(even[0], highs, even[1])};
+  to[3] = {_mm512_permutex2var_pd(odd[0], highs, odd[1])};
 }
-/// And back.
+/// The same of eight rows and four columns, and back.
+static inline void transpose(const Double4* rows, Double8* columns) {
+  transposeHalves({joined(rows[0], rows[4]), joined(rows[1], rows[5]), joined(rows[2], rows[6]),
+                   joined(rows[3], rows[7])},
+                  columns);
+}
 static inline void transpose(const Double8* columns, Double4* rows) {
-  const __m512i lows = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
-  const __m512i highs = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
-  const __m512d even[2] = {_mm512_maskz_unpacklo_pd(kEightLanes, columns[0].v, columns[1].v),
-                           _mm512_maskz_unpacklo_pd(kEightLanes, columns[2].v, columns[3].v)};
-  const __m512d odd[2] = {_mm512_maskz_unpackhi_pd(kEightLanes, columns[0].v, columns[1].v),
-                          _mm512_maskz_unpackhi_pd(kEightLanes, columns[2].v, columns[3].v)};
-  const Double8 four[4] = {{_mm512_permutex2var_pd(even[0], lows, even[1])},
-                           {_mm512_permutex2var_pd(odd[0], lows, odd[1])},
-                           {_mm512_permutex2var_pd(even[0], highs, even[1])},
-                           {_mm512_permutex2var_pd(odd[0], highs, odd[1])}};
-  for (int k = 0; k < 4; ++k) {  // rows k and k + 4
+  Double8 four[4];  // rows k and k + 4
+  transposeHalves({columns[0], columns[1], columns[2], columns[3]}, four);
+  for (int k = 0; k < 4; ++k) {
     rows[k] = firstHalf(four[k]);
     rows[k + 4] = secondHalf(four[k]);
   }
