@@ -311,6 +311,9 @@ struct Refined {
 };
 
 constexpr int kRoundLanes = 8;
+/// How often a parameter is guessed. One from floats may be far from the nearest point, or beside
+/// another part of the box: what is refined from there is nearer.
+constexpr int kGuesses = 3;
 
 /// Segments, and of each the record of a box, and a parameter near the one where it is nearest.
 struct alignas(64) RoundQueries {

@@ -61,10 +61,6 @@ class Rounding {
   }
 
  private:
-  /// A guess from floats may be far from the nearest point, or beside another part of the box: what
-  /// is rounded from there is nearer.
-  static constexpr int kGuesses = 3;
-
   struct Lane {
     std::size_t number;
     int guesses;
@@ -96,12 +92,14 @@ class Rounding {
       const Lane lane = lanes_[k];
       Clearance& clearance = clearances_[lane.number];
       const double next = std::min(std::max(clearance.t, 0.0), 1.0);
-      if (again && lane.guesses < kGuesses && std::fabs(next - queries_.t[k]) > 0.0) {
+      const Segment& segment = segments_[lane.number];
+      if (lane.guesses == kernels::kGuesses || !(std::fabs(next - queries_.t[k]) > 0.0)) {
+        clearance = scene_.clearanceTo(segment, clearance.box);
+      } else if (again) {
         add(lane, queries_.record[k], next);
       } else {
-        const Segment& segment = segments_[lane.number];
-        clearance = scene_.clearanceTo(segment, nearestQuery(segment, nullptr),
-                                       {queries_.record[k], queries_.t[k]});
+        clearance =
+            scene_.clearanceTo(segment, nearestQuery(segment, nullptr), {queries_.record[k], next});
       }
     }
   }

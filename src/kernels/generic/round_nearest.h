@@ -38,10 +38,6 @@ static inline bool isRounded(const Refined& refined, RoundedNearest& nearest) {
          (!refined.inside || (nearest.t > 0.0 && nearest.t < 1.0));
 }
 
-/// A guess from floats may be far from the nearest point, or beside another part of the box: what
-/// is refined from there is nearer.
-constexpr int kGuesses = 3;
-
 static bool roundNearest(const SceneView& view, const SegmentQuery& query, const NearestOne& one,
                          RoundedNearest& nearest) {
   const BoxRecord& box = view.records[one.record];
