@@ -9,11 +9,11 @@ constexpr std::uint32_t kManyNodes = 2500;
 
 /// The rays that are not done yet.
 struct Unfinished {
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMost = 80;
   RestOfRay rests[kMost];
   std::size_t count = 0;
 
-  bool hasRoomForAll() const { return count + 2 * kSlots <= kMost; }
+  bool hasRoomFor(std::size_t more) const { return count + more <= kMost; }
 };
 
 template <typename What>
@@ -216,7 +216,7 @@ static void searchInLanes(const SceneView& view, const RayQueries& queries, cons
   TreeSearch<What, false> search(view, queries, to);
   Unfinished unfinished;
   for (std::size_t first = 0; first < queries.count; first += kSlots) {
-    if (!unfinished.hasRoomForAll()) {
+    if (!unfinished.hasRoomFor(kSlots)) {
       finish<What>(view, queries, unfinished, to);
     }
     search.begin(first, raysFrom(queries, first));
@@ -235,7 +235,7 @@ static void searchInTurns(const SceneView& view, const RayQueries& queries, cons
   Search other(view, queries, to);
   Unfinished unfinished;
   for (std::size_t first = 0; first < queries.count; first += 2 * kSlots) {
-    if (!unfinished.hasRoomForAll()) {
+    if (!unfinished.hasRoomFor(2 * kSlots)) {
       finish<What>(view, queries, unfinished, to);
     }
     one.begin(first, raysFrom(queries, first));
