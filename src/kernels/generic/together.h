@@ -42,17 +42,24 @@ static inline void fetchRecord(const SceneView& view, std::uint32_t entry) {
   prefetch(&record.column[2]);
 }
 
-/// Calls visit(entry, i) for all entries of a list of records, which are fetched ahead.
-template <typename VisitEntry>
+/// Has the first records of a list fetched.
+template <int kFetched>
+[[gnu::always_inline]] static inline void fetchRecords(const SceneView& view,
+                                                       const std::uint32_t* list, int count) {
+  for (int i = 0; i < count && i < kFetched; ++i) {
+    fetchRecord(view, list[i]);
+  }
+}
+
+/// Calls visit(entry, i) for all entries of a list of records, of which the first are fetched;
+/// others are, as many ahead.
+template <int kFetched, typename VisitEntry>
 [[gnu::always_inline]] static inline void forEachRecord(const SceneView& view,
                                                         const std::uint32_t* list, int count,
                                                         const VisitEntry& visit) {
-  for (int i = 0; i < count && i < kAhead; ++i) {
-    fetchRecord(view, list[i]);
-  }
   for (int i = 0; i < count; ++i) {
-    if (i + kAhead < count) {
-      fetchRecord(view, list[i + kAhead]);
+    if (i + kFetched < count) {
+      fetchRecord(view, list[i + kFetched]);
     }
     visit(list[i], i);
   }
@@ -76,7 +83,8 @@ struct Company {
       if (level > 0) {
         descend(level - 1, list, listed);
       } else {
-        forEachRecord(view, list, listed, [&](std::uint32_t entry, int i) {
+        fetchRecords<kAhead>(view, list, listed);
+        forEachRecord<kAhead>(view, list, listed, [&](std::uint32_t entry, int i) {
           Companion<Visit>& c = rayOf(entry);
           if (nears[i] <= c.in_float.end_s && !c.visit(numberOf(entry))) {
             c.in_float.end_s = -1.0F;  // nothing lies before it

@@ -160,15 +160,11 @@ class TreeSearch : LaneSearch<What> {
   /// @param level of the nodes above, that the listed ones are below
   void setListed(int level, int listed) {
     listed_[level] = listed;
-    for (int i = 0; level == 0 && i < listed && i < kFetched; ++i) {
-      fetchListed(i);
-    }
-  }
-
-  void fetchListed(int i) const {
-    fetchRecord(view_, lists_[0][i]);
-    if (kIsLarge) {
-      prefetch(view_.box_of_record + (lists_[0][i] & kLargestNumber));
+    if (level == 0) {
+      fetchRecords<kFetched>(view_, lists_[0], listed);
+      for (int i = 0; kIsLarge && i < listed && i < kFetched; ++i) {
+        prefetch(view_.box_of_record + (lists_[0][i] & kLargestNumber));
+      }
     }
   }
 
@@ -182,17 +178,13 @@ class TreeSearch : LaneSearch<What> {
   }
 
   void visitAll() {
-    for (int i = 0; i < listed_[0]; ++i) {
-      if (i + kFetched < listed_[0]) {
-        fetchListed(i + kFetched);
-      }
-      const std::uint32_t entry = lists_[0][i];
+    forEachRecord<kFetched>(view_, lists_[0], listed_[0], [&](std::uint32_t entry, int i) {
       const auto ray = static_cast<int>(entry >> kNumberBits);
       visit(ray, entry & kLargestNumber, nears_[i]);
       if (Visit::kWithin && rays_[ray].in_float.end_s < 0.0F) {
         in_memory_.end[ray] = -1.0F;  // it meets no other node
       }
-    }
+    });
   }
 
   std::uint32_t unfit_ = 0;   ///< a bit for each ray that is to be asked alone
